@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
@@ -116,9 +117,7 @@ void SceneWorld::upload_geometry(const scenes::Scene& scene) {
   std::vector<scenes::Vec4> spheres;
   for (const Model& model : scene.models) {
     offsets.push_back({uint32_t(indices.size()), uint32_t(vertices.size())});
-    spheres.push_back(model.is_procedural()
-                          ? scenes::Vec4{model.center[0], model.center[1], model.center[2], model.radius}
-                          : scenes::Vec4{});
+    spheres.push_back(model.is_procedural() ? scenes::Vec4(model.center, model.radius) : scenes::Vec4(0));
     vertices.insert(vertices.end(), model.vertices.begin(), model.vertices.end());
     indices.insert(indices.end(), model.indices.begin(), model.indices.end());
   }
@@ -190,7 +189,7 @@ void SceneWorld::build_structures(const RenderJob& job) {
   for (const scenes::Instance& placed : scenes::instances_of(job.scene)) {
     rt::Instance instance;
     instance.bottom = instance.custom_index = placed.model;
-    instance.transform = placed.to_world;
+    instance.transform = std::bit_cast<std::array<float, 12>>(placed.to_world);
     instance.sbt_offset = job.scene.models[placed.model].is_procedural() ? kSphereRecord : 0;
     instance.flags = rt::instance_flag::kFacingCullDisable;
     instances.push_back(instance);

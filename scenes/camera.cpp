@@ -15,15 +15,10 @@ constexpr double kNear = 0.1, kFar = 10000;  // the planes of LumiBench's applic
 constexpr float kHeatmapScale = 1.5f;        // the application's default; no shader of the workloads reads it
 constexpr uint32_t kDefaultSecondaryRays = 16;  // the application's default number of shadow rays
 
-void set_column(Mat4& matrix, size_t column, const Vec3& v, float w) {
-  for (size_t row = 0; row < 3; ++row) matrix[4 * column + row] = v[row];
-  matrix[4 * column + 3] = w;
-}
-
 }  // namespace
 
 CameraMatrices camera_matrices(const Camera& camera, float aspect) {
-  CameraMatrices m{};
+  CameraMatrices m{Mat4(0), Mat4(0), Mat4(0), Mat4(0)};
   // These are the camera's axes in the world: right, up, and backwards, because it looks along -z.
   const Vec3 forward = normalized(camera.target - camera.eye);
   const Vec3 right = normalized(cross(forward, camera.up));
@@ -31,26 +26,26 @@ CameraMatrices camera_matrices(const Camera& camera, float aspect) {
   const Vec3 back = forward * -1.0f;
   const Vec3 axes[3] = {right, up, back};
   for (size_t axis = 0; axis < 3; ++axis) {
-    set_column(m.model_view, axis, {right[axis], up[axis], back[axis]}, 0);
-    set_column(m.model_view_inverse, axis, axes[axis], 0);
+    m.model_view[axis] = {right[axis], up[axis], back[axis], 0};
+    m.model_view_inverse[axis] = Vec4(axes[axis], 0);
   }
-  set_column(m.model_view, 3, {-dot(right, camera.eye), -dot(up, camera.eye), -dot(back, camera.eye)}, 1);
-  set_column(m.model_view_inverse, 3, camera.eye, 1);
+  m.model_view[3] = {-dot(right, camera.eye), -dot(up, camera.eye), -dot(back, camera.eye), 1};
+  m.model_view_inverse[3] = Vec4(camera.eye, 1);
 
   // The inverses are written down, not computed, because the view is rigid and the projection has five
   // entries.
   const double tangent = std::tan(double(camera.field_of_view) * std::numbers::pi / 360);
   const double depth = kFar / (kNear - kFar), shift = kNear * kFar / (kNear - kFar);
-  m.projection[0] = float(1 / (double(aspect) * tangent));
-  m.projection[5] = float(-1 / tangent);
-  m.projection[10] = float(depth);
-  m.projection[11] = -1;
-  m.projection[14] = float(shift);
-  m.projection_inverse[0] = float(double(aspect) * tangent);
-  m.projection_inverse[5] = float(-tangent);
-  m.projection_inverse[11] = float(1 / shift);
-  m.projection_inverse[14] = -1;
-  m.projection_inverse[15] = float(depth / shift);
+  m.projection[0][0] = float(1 / (double(aspect) * tangent));
+  m.projection[1][1] = float(-1 / tangent);
+  m.projection[2][2] = float(depth);
+  m.projection[2][3] = -1;
+  m.projection[3][2] = float(shift);
+  m.projection_inverse[0][0] = float(double(aspect) * tangent);
+  m.projection_inverse[1][1] = float(-tangent);
+  m.projection_inverse[2][3] = float(1 / shift);
+  m.projection_inverse[3][2] = -1;
+  m.projection_inverse[3][3] = float(depth / shift);
   return m;
 }
 

@@ -1,9 +1,9 @@
 // Declares a frame's uniform block (binding 3): camera matrices, light and counts, as the shaders read them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <vector>
 
 #include "scenes/render_params.h"
@@ -13,8 +13,8 @@ namespace glint::scenes {
 
 enum class Workload { PathTracing, Shadow, AmbientOcclusion };
 
-// Holds a matrix in column-major order: column c, row r is at [4 * c + r], as std140 lays out a mat4.
-using Mat4 = std::array<float, 16>;
+// Holds a matrix in column-major order, as std140 lays out a mat4: column c, row r is at [c][r].
+using Mat4 = glm::mat4;
 
 struct CameraMatrices {
   Mat4 model_view, projection, model_view_inverse, projection_inverse;

@@ -3,10 +3,12 @@
 #include "scenes/instancing.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -16,8 +18,8 @@
 namespace glint::scenes {
 namespace {
 
-using Row = std::array<double, 3>;
-using Matrix = std::array<Row, 3>;
+using glm::dmat3;
+using glm::dvec3;
 
 constexpr double kTolerance = 1e-5;  // of the copy's largest extent, because files have five to seven digits
 constexpr double kFloatSteps = 8;    // of the largest coordinate, for copies far from the origin
@@ -25,65 +27,40 @@ constexpr double kNormalCosine = 0.995;  // files round normals to three or four
 // A body is flat when the determinant of its matrix, scaled to trace 1, is below this value.
 constexpr double kFlat = 1e-9;
 
-Row centre_of(const Model& model) {
-  Row sum{};
-  for (const Vertex& v : model.vertices)
-    for (size_t i = 0; i < 3; ++i) sum[i] += double(v.position[i]);
-  for (double& x : sum) x /= double(model.vertices.size());
-  return sum;
+dvec3 centre_of(const Model& model) {
+  dvec3 sum(0);
+  for (const Vertex& v : model.vertices) sum += dvec3(v.position);
+  return sum / double(model.vertices.size());
 }
 
-Row offset(const Vertex& v, const Row& centre) {
-  return {double(v.position[0]) - centre[0], double(v.position[1]) - centre[1],
-          double(v.position[2]) - centre[2]};
+dvec3 offset(const Vertex& v, const dvec3& centre) {
+  return dvec3(v.position) - centre;
 }
 
-void add_outer(Matrix& m, const Row& a, const Row& b, double weight = 1) {
-  for (size_t r = 0; r < 3; ++r)
-    for (size_t c = 0; c < 3; ++c) m[r][c] += weight * a[r] * b[c];
-}
-
-Row cross(const Row& a, const Row& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Row& a, const Row& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-double trace(const Matrix& m) {
+double trace(const dmat3& m) {
   return m[0][0] + m[1][1] + m[2][2];
 }
-double determinant(const Matrix& m) {
-  return dot(m[0], cross(m[1], m[2]));
+// Expands by the first row. glm::determinant() expands by the first column, which rounds otherwise.
+double determinant(const dmat3& m) {
+  return dot(row(m, 0), cross(row(m, 1), row(m, 2)));
 }
-
-Matrix inverse(const Matrix& m) {
-  const Row columns[3] = {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
-  const double det = dot(m[0], columns[0]);
-  Matrix out;
-  for (size_t r = 0; r < 3; ++r)
-    for (size_t c = 0; c < 3; ++c) out[r][c] = columns[c][r] / det;
-  return out;
-}
-
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix out{};
-  for (size_t r = 0; r < 3; ++r)
-    for (size_t c = 0; c < 3; ++c)
-      for (size_t k = 0; k < 3; ++k) out[r][c] += a[r][k] * b[k][c];
-  return out;
+// Divides by the determinant. glm::inverse() multiplies by its reciprocal, which rounds twice.
+dmat3 inverse_of(const dmat3& m) {
+  const dvec3 rows[3] = {row(m, 0), row(m, 1), row(m, 2)};
+  const dvec3 first = cross(rows[1], rows[2]);
+  const double det = dot(rows[0], first);
+  return {first / det, cross(rows[2], rows[0]) / det, cross(rows[0], rows[1]) / det};
 }
 
 // Returns the unit normal of a triangle, on the side of its first vertex's normal, because a mirrored copy
 // winds the other way.
-Row plane_normal(const Model& model, size_t triangle) {
+dvec3 plane_normal(const Model& model, size_t triangle) {
   const auto vertex = [&](size_t i) { return model.vertices[model.indices[3 * triangle + i]]; };
-  const Row a = offset(vertex(0), Row{}), b = offset(vertex(1), Row{}), c = offset(vertex(2), Row{});
-  const Row n = cross({b[0] - a[0], b[1] - a[1], b[2] - a[2]}, {c[0] - a[0], c[1] - a[1], c[2] - a[2]});
-  const Vec3 shading = vertex(0).normal;
-  const double side = dot(n, {double(shading[0]), double(shading[1]), double(shading[2])}) < 0 ? -1 : 1;
+  const dvec3 a(vertex(0).position), b(vertex(1).position), c(vertex(2).position);
+  const dvec3 n = cross(b - a, c - a);
+  const double side = dot(n, dvec3(vertex(0).normal)) < 0 ? -1 : 1;
   const double length = side * std::sqrt(dot(n, n));
-  return length != 0 ? Row{n[0] / length, n[1] / length, n[2] / length} : Row{};
+  return length != 0 ? n / length : dvec3(0);
 }
 
 size_t largest_triangle(const Model& model) {
@@ -91,32 +68,32 @@ size_t largest_triangle(const Model& model) {
   double area = -1;
   for (size_t t = 0; t < model.indices.size() / 3; ++t) {
     const auto corner = [&](size_t i) { return model.vertices[model.indices[3 * t + i]].position; };
-    const Vec3 n = scenes::cross(corner(1) - corner(0), corner(2) - corner(0));
-    if (const auto size = double(scenes::dot(n, n)); size > area) area = size, best = t;
+    const Vec3 n = cross(corner(1) - corner(0), corner(2) - corner(0));
+    if (const auto size = double(dot(n, n)); size > area) area = size, best = t;
   }
   return best;
 }
 
 // Returns the linear part that fits best: D * C^-1 with C = sum p p^T and D = sum q p^T about the centres. A
 // flat body leaves one direction open, so its normal is mapped to the copy's normal.
-std::optional<Matrix> linear_part(const Model& from, const Model& to, const Row& from_centre,
-                                  const Row& to_centre) {
-  Matrix c{}, d{};
+std::optional<dmat3> linear_part(const Model& from, const Model& to, const dvec3& from_centre,
+                                 const dvec3& to_centre) {
+  dmat3 c(0), d(0);
   for (size_t i = 0; i < from.vertices.size(); ++i) {
-    const Row p = offset(from.vertices[i], from_centre), q = offset(to.vertices[i], to_centre);
-    add_outer(c, p, p);
-    add_outer(d, q, p);
+    const dvec3 p = offset(from.vertices[i], from_centre), q = offset(to.vertices[i], to_centre);
+    c += outerProduct(p, p);
+    d += outerProduct(q, p);
   }
   const double scale = trace(c);
   if (!(scale > 0)) return {};
   if (determinant(c) < kFlat * scale * scale * scale) {
     const size_t triangle = largest_triangle(from);
-    const Row n = plane_normal(from, triangle);
-    add_outer(c, n, n, scale);
-    add_outer(d, plane_normal(to, triangle), n, scale);
+    const dvec3 n = plane_normal(from, triangle);
+    c += outerProduct(scale * n, n);
+    d += outerProduct(scale * plane_normal(to, triangle), n);
   }
   if (determinant(c) < kFlat * scale * scale * scale) return {};
-  return product(d, inverse(c));
+  return d * inverse_of(c);
 }
 
 bool moves_onto(const Model& from, const Model& to, const Affine& m) {
@@ -129,20 +106,17 @@ bool moves_onto(const Model& from, const Model& to, const Affine& m) {
   const double tolerance = kTolerance * double(extent) + kFloatSteps * 0x1p-24 * double(largest);
   for (size_t i = 0; i < from.vertices.size(); ++i)
     for (size_t r = 0; r < 3; ++r) {
-      double x = m[4 * r + 3];
-      for (size_t k = 0; k < 3; ++k) x += double(m[4 * r + k]) * double(from.vertices[i].position[k]);
+      double x = m[r][3];
+      for (size_t k = 0; k < 3; ++k) x += double(m[r][k]) * double(from.vertices[i].position[k]);
       if (!(std::fabs(x - double(to.vertices[i].position[r])) <= tolerance)) return false;
     }
   return true;
 }
 
-bool normals_follow(const Model& from, const Model& to, const Matrix& m) {
-  const Matrix back = inverse(m);
+bool normals_follow(const Model& from, const Model& to, const dmat3& m) {
+  const dmat3 back = transpose(inverse_of(m));
   for (size_t i = 0; i < from.vertices.size(); ++i) {
-    const Vec3 &n = from.vertices[i].normal, &other = to.vertices[i].normal;
-    Row turned{}, wanted{double(other[0]), double(other[1]), double(other[2])};
-    for (size_t r = 0; r < 3; ++r)
-      for (size_t k = 0; k < 3; ++k) turned[r] += back[k][r] * double(n[k]);
+    const dvec3 turned = back * dvec3(from.vertices[i].normal), wanted(to.vertices[i].normal);
     const double lengths = std::sqrt(dot(turned, turned) * dot(wanted, wanted));
     if (lengths > 0 && dot(turned, wanted) < kNormalCosine * lengths) return false;
   }
@@ -206,13 +180,14 @@ uint64_t shape_hash(const Model& model) {
 
 std::optional<Affine> affine_between(const Model& from, const Model& to) {
   if (from.vertices.empty() || from.vertices.size() != to.vertices.size() || from.indices.empty()) return {};
-  const Row p = centre_of(from), q = centre_of(to);
-  const std::optional<Matrix> linear = linear_part(from, to, p, q);
+  const dvec3 p = centre_of(from), q = centre_of(to);
+  const std::optional<dmat3> linear = linear_part(from, to, p, q);
   if (!linear || determinant(*linear) == 0 || !std::isfinite(determinant(*linear))) return {};
   Affine out;
   for (size_t r = 0; r < 3; ++r) {
-    for (size_t c = 0; c < 3; ++c) out[4 * r + c] = float((*linear)[r][c]);
-    out[4 * r + 3] = float(q[r] - dot((*linear)[r], p));
+    const dvec3 linear_row = row(*linear, r);
+    out[r] = {float(linear_row[0]), float(linear_row[1]), float(linear_row[2]),
+              float(q[r] - dot(linear_row, p))};
   }
   if (!moves_onto(from, to, out) || !normals_follow(from, to, *linear)) return {};
   return out;

@@ -17,17 +17,9 @@ constexpr uint32_t kSphereStacks = 16;
 
 }  // namespace
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-float length(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 Vec3 normalized(const Vec3& v) {
   const float l = length(v);
-  return l > 0 ? Vec3{v[0] / l, v[1] / l, v[2] / l} : v;
+  return l > 0 ? v / l : v;
 }
 
 float sine(double radians) {

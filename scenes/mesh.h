@@ -2,28 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <string>
 
 #include "scenes/scene.h"
 
 namespace glint::scenes {
 
-// These operators compute in float, component by component in order.
-inline Vec3 operator+(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Vec3 operator-(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vec3 operator*(const Vec3& a, float s) {
-  return {a[0] * s, a[1] * s, a[2] * s};
-}
-inline float dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b);
-float length(const Vec3& v);
-Vec3 normalized(const Vec3& v);  // returns (0,0,0) for (0,0,0)
+using glm::cross;
+using glm::dot;
+using glm::length;
+
+// Returns v / |v|, and (0,0,0) for (0,0,0). glm::normalize() multiplies by 1 / |v| instead, which rounds
+// twice.
+Vec3 normalized(const Vec3& v);
 
 // Return the sine and the cosine of an angle in radians, rounded from double. They are the same floats with
 // every libm.

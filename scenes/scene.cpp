@@ -50,9 +50,10 @@ class ContentHash {
  public:
   void add(uint64_t word) { state_ = (state_ ^ word) * 0x100000001b3 ^ state_ >> 29; }
   void add(float value) { add(uint64_t{std::bit_cast<uint32_t>(value)}); }
-  template <size_t N>
-  void add(const std::array<float, N>& values) {
-    for (const float value : values) add(value);
+  // Takes a vector, or a matrix in the order of its floats.
+  template <class Values>
+  requires(Values::length() > 0) void add(const Values& values) {
+    for (size_t i = 0; i < Values::length(); ++i) add(values[i]);
   }
   uint64_t result() const {
     uint64_t x = state_;

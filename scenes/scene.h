@@ -1,17 +1,20 @@
 // Declares a scene as the renderer's buffers hold it: models, instances, materials, textures, camera, light.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
+#include <glm/mat3x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <string>
 #include <vector>
 
 namespace glint::scenes {
 
-using Vec2 = std::array<float, 2>;
-using Vec3 = std::array<float, 3>;
-using Vec4 = std::array<float, 4>;
+using Vec2 = glm::vec2;
+using Vec3 = glm::vec3;
+using Vec4 = glm::vec4;
 
 enum class MaterialModel : uint32_t {
   Lambertian = 0,
@@ -61,8 +64,9 @@ struct Texture {
   bool repeat = false;  // coordinates outside of 0 to 1 repeat the picture instead of clamping to its edge
 };
 
-// Holds a row-major 3x4 matrix that moves a point of a model into the world.
-using Affine = std::array<float, 12>;
+// Holds a 3x4 matrix that moves a point of a model into the world: affine[r] is row r, and affine[r][3] is
+// the translation. GLM's columns are these rows, so the 12 floats lie in the order of VkTransformMatrixKHR.
+using Affine = glm::mat3x4;
 inline constexpr Affine kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 // Places a model in the world.

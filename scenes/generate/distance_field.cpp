@@ -149,10 +149,10 @@ class SurfaceNets {
 
 float ellipsoid_distance(const Vec3& p, const Vec3& center, const Vec3& radii) {
   const Vec3 q = p - center;
-  const Vec3 unit{q[0] / radii[0], q[1] / radii[1], q[2] / radii[2]};
+  const Vec3 unit = q / radii;
   const float scaled = length(unit);
   // The distance is the scaled distance over the length of its gradient.
-  const float slope = length({unit[0] / radii[0], unit[1] / radii[1], unit[2] / radii[2]});
+  const float slope = length(unit / radii);
   if (slope == 0) return -std::min({radii[0], radii[1], radii[2]});
   return scaled * (scaled - 1) / slope;
 }

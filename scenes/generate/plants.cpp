@@ -88,7 +88,7 @@ void add_bush(Model& model, const Frame& frame, uint64_t triangles, int32_t mate
   Random random(seed);
   for (uint64_t k = 0; k < triangles / 2; ++k) {
     const Vec3 direction = random.direction();
-    const float radius = 0.75f + 0.2f * noise(direction * 3 + frame.origin), depth = random.next();
+    const float radius = 0.75f + 0.2f * noise(direction * 3.0f + frame.origin), depth = random.next();
     add_leaf(model, frame.at(direction * (radius * (1 - 0.5f * depth * depth))),
              leaf * random.between(0.6f, 1.2f), material, random);
   }

@@ -178,7 +178,7 @@ void add_machine(Model& model, const Frame& frame, uint64_t triangles, std::span
   for (uint32_t k = 1; k < parts; ++k) {
     const float size = random.between(0.1f, 0.4f);
     Vec3 center = random.direction();
-    for (float& c : center) c *= 0.95f - size;
+    center *= 0.95f - size;
     const float wide = size * random.between(0.6f, 1.3f), quarters = float(random.below(4));
     const float turn = 90 * quarters + random.between(-8, 8);
     Frame part = frame.inner(center, {wide, size, size}, turn);

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct Source {
   std::string file = {};  // an OBJ file that is there
   bool is_copy = false;
-  Affine matrix{};
+  Affine matrix = kIdentity;
 };
 
 bool is_first_part(const fs::path& path) {
@@ -40,7 +40,7 @@ void read_copies(const fs::path& folder, std::map<std::string, Source>& sources)
     std::string name;
     Source source{.is_copy = true};
     fields >> name >> source.file;
-    for (float& value : source.matrix) fields >> value;
+    for (size_t i = 0; i < 12; ++i) fields >> source.matrix[i / 4][i % 4];
     if (!fields)
       throw UserError({(folder / "instances.tsv").string()}, "this line is not a copy: " + line,
                       "expected: name, file, 12 numbers");
@@ -158,10 +158,8 @@ Material paint(int r, int g, int b) {
 }
 
 void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t material) {
-  const auto row = [&matrix](size_t i) -> Vec3 {
-    return {matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]};
-  };
-  const Vec3 rows[3] = {row(0), row(1), row(2)}, move{matrix[3], matrix[7], matrix[11]};
+  const Vec3 rows[3] = {Vec3(matrix[0]), Vec3(matrix[1]), Vec3(matrix[2])};
+  const Vec3 move{matrix[0][3], matrix[1][3], matrix[2][3]};
   // The cofactors are the inverse transpose times the determinant, whose sign turns mirrored normals round.
   const Vec3 cofactors[3] = {cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
   const float sign = dot(rows[0], cofactors[0]) < 0 ? -1.0f : 1.0f;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/gltf_mesh.h"
 
-#include <array>
 #include <cstring>
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -25,11 +24,12 @@ class MeshReader {
     if (!positions) fail("a primitive has no positions");
     const int32_t material = p.material < 0 ? materials_.back() : materials_.at(size_t(p.material));
     std::vector<Vertex> vertices(positions->count);
-    read<3>(*positions, vertices, [&](Vertex& v, const Vec3& at) { v.position = at, v.material = material; });
+    read<Vec3>(*positions, vertices,
+               [&](Vertex& v, const Vec3& at) { v.position = at, v.material = material; });
     const tinygltf::Accessor* normals = floats(p, "NORMAL", TINYGLTF_TYPE_VEC3);
-    if (normals) read<3>(*normals, vertices, [](Vertex& v, const Vec3& at) { v.normal = at; });
+    if (normals) read<Vec3>(*normals, vertices, [](Vertex& v, const Vec3& at) { v.normal = at; });
     if (const auto* coordinates = floats(p, "TEXCOORD_0", TINYGLTF_TYPE_VEC2))
-      read<2>(*coordinates, vertices, [](Vertex& v, const Vec2& at) { v.texture_coordinate = at; });
+      read<Vec2>(*coordinates, vertices, [](Vertex& v, const Vec2& at) { v.texture_coordinate = at; });
     append(vertices, indices(p, vertices.size()), normals == nullptr);
   }
   Model model;
@@ -52,12 +52,12 @@ class MeshReader {
     for (size_t i = 0; i < accessor.count; ++i) put(i, data.data() + first + i * size_t(stride));
   }
 
-  template <size_t N, class Put>
+  template <class Value, class Put>
   void read(const tinygltf::Accessor& accessor, std::vector<Vertex>& vertices, const Put& put) const {
     if (accessor.count != vertices.size()) fail("the attributes of a primitive have different counts");
-    each(accessor, 4 * N, [&](size_t i, const unsigned char* bytes) {
-      std::array<float, N> value;
-      std::memcpy(value.data(), bytes, sizeof value);
+    each(accessor, sizeof(Value), [&](size_t i, const unsigned char* bytes) {
+      Value value;
+      std::memcpy(&value, bytes, sizeof value);
       put(vertices[i], value);
     });
   }

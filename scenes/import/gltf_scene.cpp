@@ -4,6 +4,11 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <map>
 #include <stdexcept>
 #include <string_view>
@@ -21,8 +26,7 @@
 namespace glint::scenes {
 namespace {
 
-using Matrix = std::array<double, 16>;  // columns one after the other, as in glTF
-constexpr Matrix kUnit{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+using Matrix = glm::dmat4;     // column-major, as in glTF
 constexpr int kDeepest = 256;  // levels of nodes; more than this are a loop
 
 // Lists extensions without which the picture is still usable. Files that require another extension are
@@ -33,55 +37,23 @@ constexpr std::array<std::string_view, 7> kKnownExtensions{
     "KHR_materials_unlit", "KHR_materials_specular",
     "KHR_materials_volume"};
 
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix out{};
-  for (size_t c = 0; c < 4; ++c)
-    for (size_t r = 0; r < 4; ++r)
-      for (size_t k = 0; k < 4; ++k) out[c * 4 + r] += a[k * 4 + r] * b[c * 4 + k];
-  return out;
-}
-
 // Returns a node's matrix (glTF 2.0, 3.5.3): its matrix, or translation * rotation (a quaternion x y z w) *
 // scale.
 Matrix local_matrix(const tinygltf::Node& node) {
-  Matrix out = kUnit;
-  if (node.matrix.size() == 16) {
-    std::copy(node.matrix.begin(), node.matrix.end(), out.begin());
-    return out;
-  }
-  if (node.rotation.size() == 4) {
-    const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-    out = {1 - 2 * (y * y + z * z),
-           2 * (x * y + z * w),
-           2 * (x * z - y * w),
-           0,
-           2 * (x * y - z * w),
-           1 - 2 * (x * x + z * z),
-           2 * (y * z + x * w),
-           0,
-           2 * (x * z + y * w),
-           2 * (y * z - x * w),
-           1 - 2 * (x * x + y * y),
-           0,
-           0,
-           0,
-           0,
-           1};
-  }
-  for (size_t c = 0; c < 3 && node.scale.size() == 3; ++c)
-    for (size_t r = 0; r < 3; ++r) out[c * 4 + r] *= node.scale[c];
-  for (size_t r = 0; r < 3 && node.translation.size() == 3; ++r) out[12 + r] = node.translation[r];
+  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+  Matrix out(1);
+  if (node.rotation.size() == 4)
+    out = glm::mat4_cast(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+  for (size_t c = 0; c < 3 && node.scale.size() == 3; ++c) out[c] *= node.scale[c];
+  if (node.translation.size() == 3) out[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1);
   return out;
 }
 
 Affine affine(const Matrix& m) {
-  Affine out;
-  for (size_t r = 0; r < 3; ++r)
-    for (size_t c = 0; c < 4; ++c) out[4 * r + c] = float(m[4 * c + r]);
-  return out;
+  return glm::transpose(glm::mat4x3(glm::mat4(m)));
 }
 Vec3 column(const Matrix& m, size_t c) {
-  return {float(m[4 * c]), float(m[4 * c + 1]), float(m[4 * c + 2])};
+  return Vec3(m[c]);
 }
 
 class Nodes {
@@ -96,7 +68,7 @@ class Nodes {
   void add(int index, const Matrix& above, int depth) {
     if (depth > kDeepest) throw UserError({path_}, "its nodes form a loop");
     const tinygltf::Node& node = file_.nodes.at(size_t(index));
-    const Matrix matrix = product(above, local_matrix(node));
+    const Matrix matrix = above * local_matrix(node);
     if (node.mesh >= 0) scene_.instances.push_back({model_of(node.mesh), affine(matrix)});
     if (node.camera >= 0 && !has_camera_) camera(file_.cameras.at(size_t(node.camera)), matrix);
     if (const auto light = node.extensions.find("KHR_lights_punctual");
@@ -217,7 +189,7 @@ Scene load_gltf(const std::string& path, const LoadOptions& options) {
     Nodes nodes(scene, file, path, options);
     if (file.scenes.empty()) throw UserError({path}, "it has no scene");
     for (const int node : file.scenes.at(size_t(std::max(0, file.defaultScene))).nodes)
-      nodes.add(node, kUnit, 0);
+      nodes.add(node, Matrix(1), 0);
     nodes.finish();
   } catch (const std::out_of_range&) {
     throw UserError({path}, "it names something that is not there");

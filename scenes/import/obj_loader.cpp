@@ -31,9 +31,9 @@ struct VertexHash {
       state = (state ^ std::bit_cast<uint32_t>(value + 0.0f)) * 0xff51afd7ed558ccd;
       state ^= state >> 32;
     };
-    for (const float value : v.position) mix(value);
-    for (const float value : v.normal) mix(value);
-    for (const float value : v.texture_coordinate) mix(value);
+    for (size_t i = 0; i < 3; ++i) mix(v.position[i]);
+    for (size_t i = 0; i < 3; ++i) mix(v.normal[i]);
+    for (size_t i = 0; i < 2; ++i) mix(v.texture_coordinate[i]);
     return size_t(state);
   }
 };

@@ -69,8 +69,8 @@ Bounds world_bounds(const Scene& scene) {
     const Bounds box = bounds(model);  // a sphere's vertices are those of its tessellation
     for (size_t corner = 0; corner < 8; ++corner)
       for (size_t r = 0; r < 3; ++r) {
-        float x = m[4 * r + 3];
-        for (size_t k = 0; k < 3; ++k) x += m[4 * r + k] * (corner >> k & 1 ? box.upper[k] : box.lower[k]);
+        float x = m[r][3];
+        for (size_t k = 0; k < 3; ++k) x += m[r][k] * (corner >> k & 1 ? box.upper[k] : box.lower[k]);
         out.lower[r] = std::min(out.lower[r], x);
         out.upper[r] = std::max(out.upper[r], x);
       }

@@ -71,8 +71,8 @@ class StandIns {
     model.name = name;
     const int32_t material = material_of(name);
     if (base == "HF") return add_heights(model, fields, material);
-    Affine matrix{};
-    for (float& value : matrix) fields >> value;
+    Affine matrix = kIdentity;
+    for (size_t i = 0; i < 12; ++i) fields >> matrix[i / 4][i % 4];
     if (!fields)
       throw UserError({(folder_ / "standin.tsv").string()}, "this line is not a copy: " + line,
                       "expected: name, file, 12 numbers");

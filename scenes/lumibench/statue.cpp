@@ -45,7 +45,7 @@ float robe_distance(const Vec3& p) {
   const float torso =
       ellipsoid_distance(p, {0, 385, 0}, {50, 72, 35}) + 1.5f * wave(p[1] * 0.05f + p[0] * 0.02f);
   d = blended_union(d, torso * 0.8f, 18);
-  const float belt = std::max(std::abs(p[1] - 333) - 5, length({p[0], 0, p[2] * 1.15f}) - 41);
+  const float belt = std::max(std::abs(p[1] - 333) - 5, length(Vec3(p[0], 0, p[2] * 1.15f)) - 41);
   return blended_union(d, belt * 0.8f, 4);
 }
 
@@ -76,7 +76,7 @@ float head_distance(const Vec3& p) {
 }
 
 float pedestal_distance(const Vec3& p) {
-  const float radius = length({p[0], 0, p[2]});
+  const float radius = length(Vec3(p[0], 0, p[2]));
   const auto disc = [&](float low, float high, float r) {
     return std::max({low - p[1], p[1] - high, radius - r});
   };

@@ -33,16 +33,16 @@ namespace {
 constexpr float kPi = 3.1415926535897932f;
 
 struct Payload {
-  Vec color;
+  Vec color{};
   float distance = 0;
-  Vec scatter;
+  Vec scatter{};
   bool goes_on = false;
-  Vec normal;
+  Vec normal{};
   uint32_t random_state = 0;
 };
 
 Vec draw_in_unit_sphere(uint32_t& state) {
-  Vec p;
+  Vec p{};
   do {
     p.x = 2.0f * random_float(state) - 1.0f;
     p.y = 2.0f * random_float(state) - 1.0f;
@@ -53,14 +53,14 @@ Vec draw_in_unit_sphere(uint32_t& state) {
 
 // Returns xyz of a column-major matrix times (v, w), computed column by column in order.
 Vec transform(const scenes::Mat4& m, const Vec& v, float w) {
-  const auto row = [&](size_t r) { return m[r] * v.x + m[4 + r] * v.y + m[8 + r] * v.z + m[12 + r] * w; };
+  const auto row = [&](size_t r) { return m[0][r] * v.x + m[1][r] * v.y + m[2][r] * v.z + m[3][r] * w; };
   return {row(0), row(1), row(2)};
 }
 
 // Scatters a ray. `texel` is the texture's colour where the ray hit. Lights have none.
 void scatter(Payload& ray, const Material& material, const Vec& texel, const Vec& ray_direction,
              const Vec& normal, float distance) {
-  const Vec diffuse{material.diffuse[0], material.diffuse[1], material.diffuse[2]};
+  const Vec diffuse(material.diffuse);
   const Vec d = normalize(ray_direction);
   const float projection = dot(d, normal);
   ray.distance = distance;
@@ -132,7 +132,7 @@ class Renderer {
     uint32_t jitter_state = uniforms_.random_seed;
     ray_ = {};
     ray_.random_state = hash_pair(hash_pair(x, y), uniforms_.total_samples);
-    Vec sum;
+    Vec sum(0);
     for (uint32_t s = 0; s < uniforms_.samples; ++s) {
       Ray camera{.t_min = 0.001f, .t_max = 10000.0f};
       make_camera_ray(x, y, jitter_state, camera);

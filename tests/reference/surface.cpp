@@ -15,11 +15,11 @@ Surface surface_of(const scenes::Scene& scene, const Hit& hit) {
   for (size_t k = 0; k < 3; ++k) corner[k] = &model.vertices[model.indices[3 * hit.primitive + k]];
   const float weight[3] = {1.0f - hit.u - hit.v, hit.u, hit.v};
   Surface out;
-  Vec place;
+  Vec place(0);
   for (size_t k = 0; k < 3; ++k) {
     const scenes::Vec2& coordinate = corner[k]->texture_coordinate;
     out.normal = out.normal + Vec(corner[k]->normal) * weight[k];
-    place = place + Vec(coordinate[0], coordinate[1], 0) * weight[k];
+    place = place + Vec(coordinate, 0) * weight[k];
   }
   out.normal = normalize(out.normal);
   out.u = place.x;
@@ -31,7 +31,7 @@ Surface surface_of(const scenes::Scene& scene, const Hit& hit) {
 Vec texture_color(const scenes::Scene& scene, const scenes::Material& material, float u, float v) {
   if (material.texture < 0) return Vec(1);
   const scenes::Vec4 color = sample(scene.textures[size_t(material.texture)], u, v);
-  return {color[0], color[1], color[2]};
+  return Vec(color);
 }
 
 bool is_hole(const scenes::Scene& scene, const Hit& hit) {
@@ -44,7 +44,7 @@ namespace {
 
 // Moves a model in double, with one rounding at the end.
 void move(scenes::Model& model, const scenes::Affine& m) {
-  const auto at = [&m](size_t row, size_t column) { return double(m[4 * row + column]); };
+  const auto at = [&m](size_t row, size_t column) { return double(m[row][column]); };
   for (scenes::Vertex& vertex : model.vertices) {
     const scenes::Vec3 p = vertex.position, n = vertex.normal;
     std::array<double, 3> normal;

@@ -6,7 +6,7 @@
 namespace glint::reference {
 
 struct Surface {
-  Vec normal;
+  Vec normal{};
   float u = 0, v = 0;                          // texture coordinates
   const scenes::Material* material = nullptr;  // of the first corner
 };

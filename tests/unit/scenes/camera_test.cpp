@@ -20,7 +20,7 @@ T at(const std::vector<std::byte>& block, size_t offset) {
 // Returns element (row, column) of a * b; both are column-major.
 float product(const Mat4& a, const Mat4& b, size_t row, size_t column) {
   float sum = 0;
-  for (size_t k = 0; k < 4; ++k) sum += a[4 * k + row] * b[4 * column + k];
+  for (size_t k = 0; k < 4; ++k) sum += a[k][row] * b[column][k];
   return sum;
 }
 
@@ -75,9 +75,9 @@ TEST_CASE("the projection's inverse maps a corner of the screen to aspect, tange
 
 TEST_CASE("the view's inverse has the eye in its last column and looks along -z") {
   const CameraMatrices m = camera_matrices({.eye = {1, 2, 3}, .target = {1, 2, -9}}, 1);
-  CHECK(m.model_view_inverse[12] == 1);
-  CHECK(m.model_view_inverse[13] == 2);
-  CHECK(m.model_view_inverse[14] == 3);
-  CHECK(m.model_view_inverse[10] == 1);
-  CHECK(m.model_view_inverse[0] == 1);
+  CHECK(m.model_view_inverse[3][0] == 1);
+  CHECK(m.model_view_inverse[3][1] == 2);
+  CHECK(m.model_view_inverse[3][2] == 3);
+  CHECK(m.model_view_inverse[2][2] == 1);
+  CHECK(m.model_view_inverse[0][0] == 1);
 }

@@ -49,7 +49,7 @@ Scene scene_of(std::vector<Model> models) {
 TEST_CASE("the matrix between a body and its copy is the one that moved it") {
   const auto found = affine_between(pyramid(), moved(pyramid(), kMatrix));
   REQUIRE(found);
-  for (size_t i = 0; i < 12; ++i) CHECK(std::fabs((*found)[i] - kMatrix[i]) < 1e-5f);
+  for (size_t i = 0; i < 12; ++i) CHECK(std::fabs((*found)[i / 4][i % 4] - kMatrix[i / 4][i % 4]) < 1e-5f);
 }
 
 TEST_CASE("a flat body is moved with its normal, a line is not moved at all") {
