@@ -45,7 +45,7 @@ struct ConstantParams {
   uint32_t size = 2048;
   uint32_t ways = 4;
   uint32_t line = 64;
-  // By the CUDA programming guide, different addresses in a warp are served one after another.
+  // The CUDA programming guide says that different addresses in a warp are served one after another.
   bool serial = true;
   PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   static constexpr auto params() {
@@ -63,8 +63,8 @@ struct ConstantParams {
   }
 };
 
-// Holds the parameters of the cache behind both. Its defaults have the source of FetchParams: 39 cycles there
-// and 39 back, and 79 for a constant that misses.
+// Holds the parameters of the cache behind the instruction and constant caches. The defaults are from the
+// source that FetchParams names: 39 cycles to the cache and 39 back, and 79 for a constant that misses.
 struct CodeCacheParams {
   uint32_t size = 131072;
   uint32_t ways = 16;  // Choice: unpublished

@@ -52,7 +52,7 @@ struct Units {
   UnitParams shuffle{26, 4};   // shfl.bfly of an H200: 26 cycles, and a warp in 4 cycles per sub-core
   UnitParams branch{4, 2};
   UnitParams barrier{13, 2};  // bar.sync of an H200: 12.75 cycles, and 2 per warp
-  UnitParams rt_unit{4, 4};   // handing over rays; counted on the way back
+  UnitParams rt_unit{4, 4};   // time to hand over rays, counted when they have come back
   static constexpr auto params() {
     return std::tuple{
         section(&Units::integer, "int", "Times of integer arithmetic and logic."),
@@ -197,8 +197,9 @@ struct AtomicParams {
   }
 };
 
-// Holds the times of shared memory. Defaults: microbenchmarks of an H200, except for conflicts. There, n
-// lanes in a bank take n cycles of the unit and 2n - 5 more of latency (a turn 2, hidden 3).
+// Holds the times of shared memory. Defaults: microbenchmarks of an H200, except for the times of conflicts.
+// On an H200, n lanes that meet in a bank keep the unit busy for n cycles and add 2n - 5 cycles of latency: 2
+// for each further turn, less 3 that are hidden.
 struct SharedParams {
   uint32_t latency = 23;         // dependent loads
   uint32_t atomic_latency = 76;  // dependent atom.shared.add.u32; 126 when 32 lanes meet in a word
@@ -253,10 +254,11 @@ struct FenceParams {
   }
 };
 
-// Holds the number of instructions that hardware executes before a kernel's own. An H200 has 2 (stack pointer
-// and descriptor of global memory, read from constants) and 3 more in kernels with shared memory (where its
-// window lies). With these, the executed instructions of five kernels of 19 to 155 come out exactly. The
-// default is 0, because shaders of other parts have what they need in their code.
+// Holds the number of instructions that hardware executes before a kernel's own. An H200 executes 2, which
+// read the stack pointer and the descriptor of global memory from constants, and 3 more in kernels with
+// shared memory, which find the window of that memory. With these numbers, the counts of executed
+// instructions of five kernels of 19 to 155 instructions come out exactly. The default is 0, because shaders
+// of other parts have what they need in their code.
 struct PrologueParams {
   uint32_t instructions = 0, shared_instructions = 0;
   static constexpr auto params() {
@@ -278,9 +280,9 @@ struct Params {
   PolicyChoice<IssueScheduler> issue{"gto"};
   PolicyChoice<OpTimes> op_times{"by_unit"};
   Units units;
-  // An H200 has 1 (4 cycles within a pipe, 5 to another; 17 and 18 from the special-function unit) and 9 (a
-  // comparison's result selects after 4 cycles and guards after 13). The defaults are 0, because the
-  // latencies of other parts include these.
+  // An H200 has a crossing of 1 cycle: a result takes 4 cycles within a pipe and 5 to another, or 17 and 18
+  // from the special-function unit. It has a guard delay of 9 cycles: a comparison's result selects after 4
+  // cycles and guards after 13. The defaults are 0, because the latencies of other parts include these.
   uint32_t pipe_crossing = 0, guard_delay = 0;
   // Results of fixed latency are written in the order of their ends, because nothing checks them (MICRO 2025,
   // section 4.1).
@@ -295,14 +297,15 @@ struct Params {
   SharedParams shared;
   FenceParams fence;
   PrologueParams prologue;
-  // Hardware has true. With false, the launch ends when its last write has left its core.
+  // Hardware's value is true. With false, the launch ends when its last write has left its core.
   bool ends_when_written = false;
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
-  uint32_t block_interval = 1;  // GPGPU-Sim and Accel-Sim: a core takes one block a cycle (issue_block2core)
+  // In GPGPU-Sim and Accel-Sim, a core takes one block per cycle (issue_block2core).
+  uint32_t block_interval = 1;
   PolicyChoice<exec::WarpLayout> layout{"linear"};
   uint64_t instruction_budget = 100'000'000;
-  // Choice: this is 15 ms of a GPU. Nothing but warps that spin is known to do so little for so long.
+  // Choice: this is 15 ms of a GPU. Only warps that spin are known to do so little for so long.
   uint64_t livelock_budget = 20'000'000;
   static constexpr auto params() {
     return std::tuple{

@@ -22,14 +22,16 @@ constexpr std::string_view name_of(OnFault on_fault) {
   return on_fault == OnFault::Stop ? "stop" : "warn";
 }
 
-// Names what can be let pass. Everything else ends a run: a stack that overflows, a program without end,
-// broken control flow.
+// Names the kinds of faults that can be let pass. All other faults end a run, such as a stack that overflows,
+// a program without end, or broken control flow.
 enum class FaultKind : uint8_t {
-  OutOfBounds,  // of buffers, shared, local and constant memory; also stores to what can only be read
+  // An access lies outside of a buffer, or of shared, local or constant memory, or a store goes to memory
+  // that can only be read.
+  OutOfBounds,
   Misaligned,
-  Image,      // there is no such image, it is of another kind, or the texel is outside
-  Record,     // outside of the binding table
-  Structure,  // not an acceleration structure, or an overwritten one
+  Image,      // the image does not exist or is of another kind, or the texel lies outside of it
+  Record,     // the record lies outside of the binding table
+  Structure,  // the address holds no acceleration structure, or an overwritten one
   Count
 };
 std::string_view name_of(FaultKind kind);

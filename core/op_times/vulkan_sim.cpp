@@ -1,4 +1,4 @@
-// Holds the times `vulkan_sim`: that simulator's table of PTX opcodes, and the pipeline around it.
+// Holds the times `vulkan_sim`, which are Vulkan-Sim's table of PTX opcodes and the pipeline around it.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -9,12 +9,12 @@ namespace {
 
 using isa::Unit;
 
-// Source: Vulkan-Sim 2.0.0, SM75_RTX2060 and MOBILE (the same): -ptx_opcode_latency_* and
-// -ptx_opcode_initiation_*, and 1 / 1 for every opcode that set_opcode_and_latency() does not name: moves,
-// comparisons, logic, shifts, conversions. Five cycles are added to each, because its logs' sums from issue
-// to completion are 7.0 cycles per arithmetic instruction (SHIP, path tracing), and the table's own latencies
-// are 1 to 5. Divisions are its pairs of rcp (100) and mul (4); fma is mul and add, into which its compiler
-// breaks it.
+// Source: -ptx_opcode_latency_* and -ptx_opcode_initiation_* of Vulkan-Sim 2.0.0. Its configurations
+// SM75_RTX2060 and MOBILE have the same values. Opcodes that its set_opcode_and_latency() does not name take
+// 1 / 1: moves, comparisons, logic, shifts and conversions. Five cycles are added to each latency: in
+// Vulkan-Sim's logs (SHIP, path tracing) an arithmetic instruction takes 7.0 cycles from issue to completion,
+// while the latencies of the table are 1 to 5. A division has the time of Vulkan-Sim's pair of rcp (100) and
+// mul (4). An fma has that of mul and add, into which Vulkan-Sim's compiler breaks it.
 constexpr uint32_t kPipe = 5;
 constexpr OpTime kTimes[] = {
     {"add.*f64", 8 + kPipe, 4},
