@@ -16,7 +16,7 @@
 #include "base/diagnostics.h"
 #include "exec/image_view.h"
 #include "isa/program.h"
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::amber {
 

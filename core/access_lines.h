@@ -5,7 +5,7 @@
 #include "core/lsu.h"
 #include "core/params.h"
 #include "exec/executor.h"
-#include "rtunit/candidate_table.h"
+#include "rtunit/traversal/candidate_table.h"
 
 namespace glint::core {
 

@@ -7,7 +7,7 @@
 
 #include "base/trace_table.h"
 #include "core/core_observer.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::core {
 

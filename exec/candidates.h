@@ -12,8 +12,8 @@ namespace glint::exec {
 struct CandidateCounts {
   // Calls of such shaders, counted once per warp and shader, and the lanes that made them.
   uint64_t calls = 0, lanes = 0;
-  // Candidates of ended traces (rtunit/candidate_table.h), and the number of times that a ray stopped because
-  // its table was full.
+  // Candidates of ended traces (rtunit/traversal/candidate_table.h), and the number of times that a ray
+  // stopped because its table was full.
   uint64_t gathered = 0, dropped = 0, overflows = 0;
 };
 

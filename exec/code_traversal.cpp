@@ -7,8 +7,8 @@
 
 #include "base/check.h"
 #include "exec/ray_values.h"
-#include "rtunit/structure.h"
-#include "rtunit/traversal.h"
+#include "rtunit/structure/structure.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::exec {
 namespace {

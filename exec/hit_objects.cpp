@@ -12,7 +12,7 @@
 #include "exec/ray_values.h"
 #include "isa/hit_object.h"
 #include "rtunit/node_format.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::exec {
 namespace {

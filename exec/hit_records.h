@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "exec/image.h"
-#include "rtunit/ray.h"
+#include "rtunit/traversal/ray.h"
 
 namespace glint::exec {
 

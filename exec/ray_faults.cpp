@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "exec/hit_records.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::exec {
 

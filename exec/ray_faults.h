@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "exec/fault_gate.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::exec {
 

@@ -7,8 +7,8 @@
 #include "exec/numbered.h"
 #include "exec/ray_values.h"
 #include "isa/ray_query.h"
-#include "rtunit/structure.h"
-#include "rtunit/traversal.h"
+#include "rtunit/structure/structure.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::exec {
 namespace {

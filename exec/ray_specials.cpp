@@ -6,7 +6,7 @@
 
 #include "exec/hit_records.h"
 #include "exec/ray_values.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::exec {
 

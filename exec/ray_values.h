@@ -10,8 +10,8 @@
 #include "isa/inst.h"
 #include "isa/warp.h"
 #include "memsys/address_space.h"
-#include "rtunit/ray.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
+#include "rtunit/traversal/ray.h"
 
 namespace glint::exec {
 

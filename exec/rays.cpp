@@ -11,7 +11,7 @@
 #include "exec/hit_records.h"
 #include "exec/ray_specials.h"
 #include "exec/ray_values.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::exec {
 

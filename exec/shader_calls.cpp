@@ -9,7 +9,7 @@
 #include "base/num_lanes.h"
 #include "exec/hit_records.h"
 #include "exec/ray_specials.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::exec {
 

@@ -10,7 +10,7 @@
 #include "exec/image.h"
 #include "exec/simt_stack.h"
 #include "isa/warp.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::exec {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/num_lanes.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::pipeline {
 

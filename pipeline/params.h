@@ -8,8 +8,8 @@
 #include "base/params.h"
 #include "core/params.h"
 #include "memsys/params.h"
-#include "rtunit/build.h"
 #include "rtunit/params.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::pipeline {
 

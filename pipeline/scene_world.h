@@ -8,7 +8,7 @@
 
 #include "pipeline/render.h"
 #include "pipeline/unbound.h"
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::pipeline {
 

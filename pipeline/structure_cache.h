@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/file_store.h"
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::pipeline {
 

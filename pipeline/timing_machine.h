@@ -14,7 +14,7 @@
 #include "memsys/memory_system.h"
 #include "pipeline/livelock_watch.h"
 #include "pipeline/render.h"
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 
 namespace glint::pipeline {
 

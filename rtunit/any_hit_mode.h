@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "base/policy_kinds.h"
-#include "rtunit/candidate_table.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/traversal/candidate_table.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::rt {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/policy_kinds.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::rt {
 

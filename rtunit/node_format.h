@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/policy_kinds.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::rt {
 

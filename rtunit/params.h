@@ -13,7 +13,7 @@
 #include "rtunit/child_order.h"
 #include "rtunit/coalescer.h"
 #include "rtunit/ray_scheduler.h"
-#include "rtunit/shortcuts.h"
+#include "rtunit/shortcuts/shortcuts.h"
 #include "rtunit/stack_model.h"
 
 namespace glint::rt {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/types.h"
-#include "rtunit/ray.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/traversal/ray.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::rt {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/policy_kinds.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::rt {
 
@@ -21,7 +21,7 @@ struct StackWork {
   uint16_t replayed = 0;  // of them, those asked for
 };
 
-// Where stacks lie in memory: as candidate tables do (rtunit/candidate_table.h), so that lanes share lines.
+// Where stacks lie in memory: as candidate tables do (rtunit/traversal/candidate_table.h), so that lanes share lines.
 struct StackLayout {
   Address base = 0;   // physical, of this core
   uint32_t rows = 0;  // sectors a ray; 0: stacks never leave the chip

@@ -11,7 +11,7 @@
 #include "exec/image_view.h"
 #include "frontend/compile.h"
 #include "pipeline/description/value.h"
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::pipeline {
 

@@ -11,8 +11,8 @@
 namespace glint::pipeline {
 
 // Cycles from a lane's wish to its request, and from a test's end to the next wish, which the unit's
-// registers take. Source: the timing machine's RT unit (rtunit/rt_unit.cpp), which does each in a cycle of
-// its own.
+// registers take. Source: the timing machine's RT unit (rtunit/unit/rt_unit.cpp), which does each in a cycle
+// of its own.
 constexpr Cycle kStep = 1;
 
 RayModel::RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches,

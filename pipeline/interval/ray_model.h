@@ -13,7 +13,7 @@
 #include "memsys/address_space.h"
 #include "pipeline/interval/memory_model.h"
 #include "rtunit/params.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::pipeline {
 

@@ -8,7 +8,7 @@
 #include "base/num_lanes.h"
 #include "base/registry.h"
 #include "rtunit/any_hit_mode.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::rt {
 namespace {

@@ -1,7 +1,7 @@
 // Node format `bvh2`: 64-byte nodes of two boxes in single precision, as software traversal on GPUs has them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "rtunit/float_boxes.h"
+#include "rtunit/formats/float_boxes.h"
 
 namespace glint::rt {
 

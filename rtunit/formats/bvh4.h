@@ -2,7 +2,7 @@
 // nodes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "rtunit/float_boxes.h"
+#include "rtunit/formats/float_boxes.h"
 
 namespace glint::rt {
 

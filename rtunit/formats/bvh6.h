@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "rtunit/quantised_boxes.h"
+#include "rtunit/formats/quantised_boxes.h"
 
 namespace glint::rt {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "rtunit/quantised_boxes.h"
+#include "rtunit/formats/quantised_boxes.h"
 
 namespace glint::rt {
 

@@ -5,7 +5,7 @@
 
 #include "base/registry.h"
 #include "rtunit/any_hit_mode.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/registry.h"
-#include "rtunit/validate.h"
+#include "rtunit/structure/validate.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
 

@@ -7,7 +7,7 @@
 #include "base/diagnostics.h"
 #include "base/registry.h"
 #include "rtunit/node_format.h"
-#include "rtunit/validate.h"
+#include "rtunit/structure/validate.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

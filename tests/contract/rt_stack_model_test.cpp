@@ -5,7 +5,7 @@
 
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

@@ -9,7 +9,7 @@
 #include "base/diagnostics.h"
 #include "isa/text.h"
 #include "pipeline/functional_machine.h"
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::fuzz {
 namespace {

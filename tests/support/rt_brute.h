@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "rtunit/box_test.h"
+#include "rtunit/intersection/box_test.h"
+#include "rtunit/intersection/triangle_test.h"
 #include "rtunit/node_format.h"
-#include "rtunit/triangle_test.h"
 #include "tests/support/rt_launch.h"
 
 namespace glint::rt::test {

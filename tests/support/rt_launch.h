@@ -8,7 +8,7 @@
 #include <deque>
 #include <vector>
 
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 #include "tests/support/fixed_latency_memory.h"
 #include "tests/support/rt_scenes.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "memsys/address_space.h"
-#include "rtunit/build.h"
-#include "rtunit/traversal.h"
+#include "rtunit/structure/build.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::rt::test {
 

@@ -11,7 +11,7 @@
 #include "pipeline/functional_machine.h"
 #include "pipeline/software_traversal.h"
 #include "pipeline/timing_machine.h"
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 namespace glint::vulkan_rt {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstring>
 
-#include "rtunit/validate.h"
+#include "rtunit/structure/validate.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

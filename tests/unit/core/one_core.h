@@ -13,7 +13,7 @@
 #include "core/dispatcher.h"
 #include "engine/engine.h"
 #include "engine/engine_loop.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 #include "tests/support/fixed_latency_memory.h"
 
 namespace glint::core {

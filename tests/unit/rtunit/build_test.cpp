@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
 #include "rtunit/node_format.h"
-#include "rtunit/validate.h"
+#include "rtunit/structure/validate.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 

@@ -1,6 +1,6 @@
 // Tests rays that gather candidates: full tables, candidates that the ray no longer reaches, ties, ends.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/candidate_table.h"
+#include "rtunit/traversal/candidate_table.h"
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "rtunit/ray_state.h"
+#include "rtunit/intersection/ray_space.h"
 
 namespace glint::rt {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::rt {
 

@@ -1,6 +1,6 @@
 // Calls Embree's builder on one thread and flattens what it returns.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/build_tree.h"
+#include "rtunit/structure/build_tree.h"
 
 #if __has_include(<embree4/rtcore.h>)  // Ubuntu 24.04; building is the same in both
 #include <cstdint>

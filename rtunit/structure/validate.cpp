@@ -1,6 +1,6 @@
 // Walks encoded structures and compares them with what they hold.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/validate.h"
+#include "rtunit/structure/validate.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "rtunit/build_tree.h"
 #include "rtunit/node_format.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/structure/build_tree.h"
+#include "rtunit/traversal/ray_stack.h"
 
 namespace glint::rt {
 namespace {

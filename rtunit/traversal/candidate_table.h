@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "rtunit/ray.h"
+#include "rtunit/traversal/ray.h"
 
 namespace glint::rt {
 

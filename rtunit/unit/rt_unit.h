@@ -15,8 +15,8 @@
 #include "memsys/ring.h"
 #include "rtunit/params.h"
 #include "rtunit/rt_port.h"
-#include "rtunit/rt_stats.h"
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
+#include "rtunit/unit/rt_stats.h"
 
 namespace glint::rt {
 

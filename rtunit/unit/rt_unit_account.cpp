@@ -1,6 +1,6 @@
 // Attributes every cycle of an RT unit to exactly one reason.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 
 namespace glint::rt {
 

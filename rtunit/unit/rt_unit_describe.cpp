@@ -3,7 +3,7 @@
 #include <bit>
 #include <fmt/format.h>
 
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 
 namespace glint::rt {
 

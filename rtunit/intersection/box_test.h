@@ -1,7 +1,6 @@
 // The ray-box test: slabs, padded so that rounding never loses a box that the exact ray touches.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "rtunit/ray_state.h"
 
 namespace glint::rt {
 

@@ -4,22 +4,16 @@
 #include <array>
 #include <cstdint>
 
-#include "rtunit/candidate_table.h"
-#include "rtunit/ray.h"
-#include "rtunit/ray_path.h"
-#include "rtunit/ray_stack.h"
-#include "rtunit/traversal_rules.h"
+#include "rtunit/intersection/ray_space.h"
+#include "rtunit/traversal/candidate_table.h"
+#include "rtunit/traversal/ray.h"
+#include "rtunit/traversal/ray_path.h"
+#include "rtunit/traversal/ray_stack.h"
+#include "rtunit/traversal/traversal_rules.h"
 
 namespace glint::rt {
 
-// A space that is being walked: the ray in its coordinates and what the tests derive from it.
-struct RaySpace {
-  std::array<float, 3> origin{}, direction{}, inverse_direction{};
-  std::array<float, 3> shear{};          // Woop et al. 2013: Sx, Sy, Sz
-  std::array<uint8_t, 3> axis{0, 1, 2};  // kx, ky, kz: kz is the largest component of the direction
-};
-
-// Data: may be copied. The functions live in rtunit/traversal.h.
+// Data: may be copied. The functions live in rtunit/traversal/traversal.h.
 struct RayState {
   Ray ray;
   RayStatus status = RayStatus::Idle;

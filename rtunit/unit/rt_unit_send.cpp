@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "base/num_lanes.h"
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 
 namespace glint::rt {
 namespace {

@@ -8,9 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "rtunit/box_test.h"
-#include "rtunit/layout.h"
-#include "rtunit/quantise.h"
+#include "rtunit/formats/quantise.h"
+#include "rtunit/intersection/box_test.h"
+#include "rtunit/intersection/ray_space.h"
+#include "rtunit/structure/layout.h"
 
 namespace glint::rt {
 

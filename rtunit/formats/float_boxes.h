@@ -8,8 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "rtunit/box_test.h"
-#include "rtunit/layout.h"
+#include "rtunit/intersection/box_test.h"
+#include "rtunit/intersection/ray_space.h"
+#include "rtunit/structure/layout.h"
 
 namespace glint::rt {
 

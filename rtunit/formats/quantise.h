@@ -10,7 +10,7 @@
 #include <span>
 
 #include "base/check.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
 
 namespace glint::rt {
 

@@ -1,7 +1,7 @@
 // What an RT unit does for its rays' stacks: spills, fills, and restarts from the root.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/check.h"
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 
 namespace glint::rt {
 

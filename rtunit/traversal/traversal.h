@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "memsys/address_space.h"
-#include "rtunit/ray_state.h"
-#include "rtunit/structure.h"
+#include "rtunit/structure/structure.h"
+#include "rtunit/traversal/ray_state.h"
 
 namespace glint::rt {
 

@@ -1,6 +1,6 @@
 // Turns geometry into leaves, lets the tree builder arrange them and a node format write them.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/build.h"
+#include "rtunit/structure/build.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "base/registry.h"
-#include "rtunit/build_tree.h"
-#include "rtunit/ray_state.h"
+#include "rtunit/structure/build_tree.h"
+#include "rtunit/traversal/ray_stack.h"
 
 namespace glint::rt {
 namespace {

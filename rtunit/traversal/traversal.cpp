@@ -1,6 +1,6 @@
 // Vulkan's traversal rules, node by node (Vulkan 1.3, chapter "Ray Traversal").
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/traversal.h"
+#include "rtunit/traversal/traversal.h"
 
 #include <bit>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "rtunit/formats/bvh4.h"
 #include "rtunit/formats/bvh6.h"
 #include "rtunit/formats/bvh8.h"
-#include "rtunit/triangle_test.h"
+#include "rtunit/intersection/triangle_test.h"
 
 namespace glint::rt {
 namespace {

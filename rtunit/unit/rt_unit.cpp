@@ -1,6 +1,6 @@
 // One cycle of the RT unit, back to front.
 // SPDX-License-Identifier: Apache-2.0
-#include "rtunit/rt_unit.h"
+#include "rtunit/unit/rt_unit.h"
 
 #include <algorithm>
 #include <bit>

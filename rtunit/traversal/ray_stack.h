@@ -14,7 +14,8 @@ inline constexpr int kStackEntries = 192;
 
 // One node still to be visited: where it is and where the ray enters it.
 struct StackEntry {
-  uint32_t node;  // NodeRef (rtunit/structure.h): block from the base of the structure being walked, and kind
+  uint32_t node;  // NodeRef (rtunit/structure/structure.h): block from the base of the structure being
+                  // walked, and kind
   float t_enter;
 };
 
