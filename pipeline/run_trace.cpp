@@ -116,9 +116,9 @@ TraceRecorders record_trace(TimingMachine& machine, const exec::Image& image, co
     machine.core(i).observe(recorder);
     machine.rt_unit(i).warp_moved().listen([&recorder](const rt::WarpMoved& moved) {
       if (moved.has_left)
-        recorder.leave_rt(moved.cycle, moved.place, moved.lanes, moved.states);
+        recorder.leave_rt(moved.cycle, moved.buffer_slot, moved.lanes, moved.states);
       else
-        recorder.enter_rt(moved.cycle, moved.place, moved.warp_slot, moved.lanes, moved.states);
+        recorder.enter_rt(moved.cycle, moved.buffer_slot, moved.warp_slot, moved.lanes, moved.states);
     });
   }
   const uint32_t channels = machine.memory().num_partitions();

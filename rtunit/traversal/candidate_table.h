@@ -4,6 +4,7 @@
 #pragma once
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "rtunit/traversal/ray.h"
@@ -51,6 +52,8 @@ struct CandidateTable {
     unwritten |= 1u << free;
     ++gathered;
   }
+  // Returns the rows with candidates that the RT unit has not sent to memory yet, and takes them as sent.
+  uint32_t take_unwritten() { return std::exchange(unwritten, 0) & used; }
   void drop(uint32_t rows) {
     dropped += uint32_t(std::popcount(used & rows));
     used &= ~rows;

@@ -13,6 +13,7 @@ struct Fetch {
   Address address = 0;  // virtual
   uint32_t bytes = 0;
   NodeKind kind = NodeKind::Internal;
+  bool operator==(const Fetch&) const = default;
 };
 
 // Kept by the traversal for rays that have one. node[d] is the node visited last at depth d; of a ray's

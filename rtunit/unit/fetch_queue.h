@@ -1,0 +1,94 @@
+// The fetch queue of the RT unit: chooses which lanes read which node, sends the requests, takes the answers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "memsys/address_space.h"
+#include "memsys/l1_port.h"
+#include "rtunit/params.h"
+#include "rtunit/unit/request_source.h"
+#include "rtunit/unit/warp_buffer.h"
+
+namespace glint::rt {
+
+// A read on its way for some lanes of one warp. Its index in the queue is the token of its requests.
+struct ReadInFlight {
+  static constexpr uint32_t kNone = ~0u;
+  uint32_t slot = 0;
+  LaneMask lanes = 0;
+  Read read;
+  uint32_t sent = 0;        // bytes
+  uint32_t unanswered = 0;  // requests
+  uint32_t next = kNone;    // another warp's lanes that share it
+  bool is_complete() const { return unanswered == 0 && sent >= read.what.bytes; }
+};
+
+class FetchQueue final : public RequestSource {
+ public:
+  FetchQueue(const Params& params, const mem::AddressSpace& memory, mem::L1Port& l1, WarpBuffer& buffer,
+             RtStats& stats);
+
+  // Takes a node that some lane wants, for all lanes that share the read. False: no lane wants one, or no
+  // entry is free.
+  bool choose(Cycle now);
+  // A node has been chosen and not all of its requests have been taken.
+  bool has_request(Cycle) const override { return sending_ != ReadInFlight::kNone; }
+  bool send(Cycle now) override;
+  bool has_reads_waiting() const override { return buffer_.has_wanting_lanes(); }
+  Cycle next_event(Cycle now) const override;
+
+  // An entry for a read of one request that another part of the unit sends. Returns the request's token.
+  mem::Token open(uint32_t slot, int lane);
+  // The L1 has refused that request.
+  void cancel(mem::Token token);
+  bool is_full() const { return max_reads_ != 0 && num_reads_ >= max_reads_; }
+  uint32_t num_reads() const { return num_reads_; }
+
+  // Takes the L1's answers and calls deliver(read, slot, lanes) for each warp whose read is complete.
+  template <class Deliver>
+  void receive(Cycle now, Deliver&& deliver) {
+    for (uint32_t i = 0; i < responses_per_cycle_; ++i) {
+      const std::optional<mem::Token> token = l1_.pop(now, mem::Client::RtUnit);
+      if (!token) return;
+      --reads_[*token].unanswered;
+      if (!reads_[*token].is_complete()) continue;
+      --num_reads_;
+      for (uint32_t index = *token; index != ReadInFlight::kNone;) {
+        const ReadInFlight read = reads_[index];
+        free_.push_back(index);
+        index = read.next;
+        deliver(reads_[*token].read, read.slot, read.lanes);
+      }
+    }
+  }
+  // Calls each(slot, lanes) for all whom the read is for.
+  template <class Each>
+  void for_each_reader(mem::Token token, Each&& each) const {
+    for (auto i = uint32_t(token); i != ReadInFlight::kNone; i = reads_[i].next)
+      each(reads_[i].slot, reads_[i].lanes);
+  }
+
+ private:
+  uint32_t add(uint32_t slot, LaneMask lanes, const Read& read);
+  static LaneMask lanes_wanting(const BufferSlot& slot, const Fetch& what);
+
+  const uint32_t max_reads_, responses_per_cycle_, request_bytes_;  // max_reads_ 0: no limit
+  const std::string scheduler_name_;
+  const mem::AddressSpace& memory_;
+  mem::L1Port& l1_;
+  WarpBuffer& buffer_;
+  RtStats& stats_;
+  const std::unique_ptr<RayScheduler> scheduler_;
+  const std::unique_ptr<Coalescer> coalescer_;
+  std::vector<WarpView> views_;
+  std::vector<ReadInFlight> reads_;  // one a lane at most
+  std::vector<uint32_t> free_;
+  uint32_t sending_ = ReadInFlight::kNone;
+  uint32_t num_reads_ = 0;  // A read that warps share is one.
+};
+
+}  // namespace glint::rt

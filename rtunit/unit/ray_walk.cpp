@@ -1,0 +1,117 @@
+// The steps of a ray's walk in the RT unit.
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/unit/ray_walk.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/check.h"
+#include "rtunit/traversal/traversal.h"
+
+namespace glint::rt {
+
+RayWalk::RayWalk(const Params& params, const mem::AddressSpace& memory, WarpBuffer& buffer, RtStats& stats)
+    : retest_(params.retest),
+      memory_(memory),
+      buffer_(buffer),
+      stats_(stats),
+      child_order_(params.child_order.make({})) {
+}
+
+void RayWalk::start(uint32_t slot, int lane, Cycle now) {
+  RayState& ray = buffer_[slot].ray_of(lane);
+  GLINT_DCHECK(ray.status == RayStatus::Traversing, "lane {} has no ray to traverse", lane);
+  if (ray.nodes_visited == 0) {
+    ++stats_.rays;
+    ray.unit_cycles = 0;
+    if (ray.ray.flags & ray_flag::kTerminateOnFirstHit) ++stats_.first_hit_rays;
+  } else {
+    ++stats_.resumed;
+    // stop() counted the ray when it was given back to the core, but its walk goes on.
+    stats_.ray_nodes.remove(ray.nodes_visited);
+    stats_.ray_latency.remove(ray.unit_cycles);
+  }
+  ray.rules.retest = retest_;
+  ray.rules.order = child_order_->for_rays();
+  for (WalkHook* hook : hooks_) hook->entered(slot, lane);
+  go_on(slot, lane, now);
+}
+
+void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
+  for (WalkHook* hook : hooks_)
+    if (hook->detour(slot, lane)) return;
+  RayState& ray = buffer_[slot].ray_of(lane);
+  if (ray.status == RayStatus::Traversing) {
+    const Fetch node = next_fetch(ray);
+    if (const std::byte* bytes = memory_.find(node.address, node.bytes)) {
+      __builtin_prefetch(bytes);  // The node is tested many cycles from now.
+      return buffer_.want(slot, lane, {node, nullptr, pipe_of(node.kind)});
+    }
+    break_off(ray);
+  }
+  stop(slot, lane, now);
+}
+
+void RayWalk::start_test(uint32_t slot, int lane, Cycle now) {
+  if (WalkHook* errand = buffer_[slot].read[size_t(lane)].errand)
+    errand->errand_started(slot, lane);
+  else
+    visit(slot, lane, now);
+}
+
+void RayWalk::end_test(uint32_t slot, int lane, Cycle now) {
+  for (WalkHook* hook : hooks_) hook->test_ended(slot, lane);
+  go_on(slot, lane, now);
+}
+
+void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
+  const Fetch& node = buffer_[slot].read[size_t(lane)].what;
+  RayState& ray = buffer_[slot].ray_of(lane);
+  node_visited_.fire([&] { return NodeVisited{now, buffer_[slot].warp_slot, lane, node}; });
+  const uint32_t boxes = ray.box_tests, triangles = ray.triangle_tests, hits = ray.hits_in_interval;
+  if (!retest_ && ray.stack[size_t(ray.stack_size) - 1].t_enter > ray.committed.t) ++stats_.stale_nodes;
+  step(ray, memory_.find(node.address, node.bytes));
+  stats_.box_tests += ray.box_tests - boxes;
+  stats_.triangle_tests += ray.triangle_tests - triangles;
+  count_node(node.kind);
+  for (WalkHook* hook : hooks_) hook->visited({slot, lane, ray, node.kind, ray.hits_in_interval - hits});
+}
+
+// A shader that gets the ray may end its walk, so the ray is counted now. start() takes that back when the
+// ray returns.
+void RayWalk::stop(uint32_t slot, int lane, Cycle now) {
+  RayState& ray = buffer_[slot].ray_of(lane);
+  ray.unit_cycles += now - buffer_[slot].arrived;
+  stats_.ray_latency.add(ray.unit_cycles);
+  stats_.ray_nodes.add(ray.nodes_visited);
+  stats_.most_nodes = std::max(stats_.most_nodes, ray.nodes_visited);
+  stats_.deepest_stack = std::max(stats_.deepest_stack, uint32_t(ray.stack_peak));
+  const bool has_ended =
+      ray.status == RayStatus::Done || (ray.status == RayStatus::Gathered && ray.stack_size == 0);
+  if (has_ended)
+    ++stats_.finished;
+  else
+    ++stats_.suspended;
+  buffer_.stop(slot, lane, now);
+}
+
+void RayWalk::count_node(NodeKind kind) {
+  ++stats_.nodes;
+  switch (kind) {
+    case NodeKind::Internal:
+      ++stats_.internal_nodes;
+      break;
+    case NodeKind::Instance:
+      ++stats_.instance_leaves;
+      break;
+    case NodeKind::Triangle:
+    case NodeKind::TriangleSecond:
+      ++stats_.triangle_leaves;
+      break;
+    case NodeKind::Procedural:
+      ++stats_.procedural_leaves;
+      break;
+  }
+}
+
+}  // namespace glint::rt

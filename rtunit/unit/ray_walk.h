@@ -1,0 +1,54 @@
+// A ray's way through the RT unit: where it starts, which node is next, what a visit does, when it stops.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/probe.h"
+#include "memsys/address_space.h"
+#include "rtunit/params.h"
+#include "rtunit/unit/rt_stats.h"
+#include "rtunit/unit/walk_hook.h"
+#include "rtunit/unit/warp_buffer.h"
+
+namespace glint::rt {
+
+// Tells of a lane's visit of a node when its test starts.
+struct NodeVisited {
+  Cycle cycle = 0;
+  uint32_t warp_slot = 0;
+  int lane = 0;
+  Fetch node;
+};
+
+class RayWalk {
+ public:
+  RayWalk(const Params& params, const mem::AddressSpace& memory, WarpBuffer& buffer, RtStats& stats);
+  void add(WalkHook& hook) { hooks_.push_back(&hook); }
+
+  // The lane's ray enters the unit, for the first time or again after a shader.
+  void start(uint32_t slot, int lane, Cycle now);
+  // The lane is between two nodes: it wants the next one or stops, unless a hook has something to do first.
+  void go_on(uint32_t slot, int lane, Cycle now);
+  // The functional step is made when the test starts; the unit sees its outcome when the test ends.
+  void start_test(uint32_t slot, int lane, Cycle now);
+  void end_test(uint32_t slot, int lane, Cycle now);
+
+  Probe<NodeVisited>& node_visited() { return node_visited_; }
+
+ private:
+  void visit(uint32_t slot, int lane, Cycle now);
+  void stop(uint32_t slot, int lane, Cycle now);
+  void count_node(NodeKind kind);
+
+  const bool retest_;
+  const mem::AddressSpace& memory_;
+  WarpBuffer& buffer_;
+  RtStats& stats_;
+  const std::unique_ptr<ChildOrder> child_order_;
+  std::vector<WalkHook*> hooks_;
+  Probe<NodeVisited> node_visited_;
+};
+
+}  // namespace glint::rt

@@ -1,0 +1,35 @@
+// What a lane of the RT unit reads next, and which pipeline tests it when it has arrived.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "rtunit/traversal/ray_path.h"
+
+namespace glint::rt {
+
+class WalkHook;
+
+// The number of a test pipeline. TestPipelines::add() gives out the numbers after these.
+using Pipe = uint8_t;
+inline constexpr Pipe kBoxPipe = 0, kTrianglePipe = 1, kTransformPipe = 2;
+inline constexpr Pipe kNoPipe = 0xff;  // What is read needs no test.
+
+constexpr Pipe pipe_of(NodeKind kind) {
+  switch (kind) {
+    case NodeKind::Instance:
+      return kTransformPipe;
+    case NodeKind::Triangle:
+    case NodeKind::TriangleSecond:
+      return kTrianglePipe;
+    default:
+      return kBoxPipe;
+  }
+}
+
+struct Read {
+  Fetch what;
+  WalkHook* errand = nullptr;  // who asked for it; null: it is the ray's next node
+  Pipe pipe = kBoxPipe;
+};
+
+}  // namespace glint::rt

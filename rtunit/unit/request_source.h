@@ -1,0 +1,21 @@
+// What sends requests through the RT unit's port to the L1: the interface of request sources.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "base/types.h"
+
+namespace glint::rt {
+
+// RtUnit lists its sources by priority and asks the first that has a request.
+class RequestSource {
+ public:
+  virtual ~RequestSource() = default;
+  virtual bool has_request(Cycle now) const = 0;
+  // Sends one request. Returns false when the L1 refuses it; nothing has changed then.
+  virtual bool send(Cycle now) = 0;
+  // Returns whether it holds a read that needs an entry for its answer, and so waits while all are in use.
+  virtual bool has_reads_waiting() const { return false; }
+  // The earliest cycle after `now` in which it has something to do; kNever: not before something happens.
+  virtual Cycle next_event(Cycle now) const { return has_request(now) ? now + 1 : kNever; }
+};
+
+}  // namespace glint::rt

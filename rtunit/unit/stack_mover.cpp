@@ -1,0 +1,107 @@
+// What the RT unit does for its rays' stacks: spills, fills, and restarts from the root.
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/unit/stack_mover.h"
+
+#include <utility>
+
+#include "base/check.h"
+
+namespace glint::rt {
+
+StackMover::StackMover(std::unique_ptr<StackModel> model, Address stacks, mem::L1Port& l1, WarpBuffer& buffer,
+                       FetchQueue& fetches, RtStats& stats)
+    : model_(std::move(model)),
+      layout_{stacks, model_->rows()},
+      l1_(l1),
+      buffer_(buffer),
+      fetches_(fetches),
+      stats_(stats),
+      work_(buffer.size()) {
+}
+
+void StackMover::entered(uint32_t slot, int lane) {
+  RayState& ray = buffer_[slot].ray_of(lane);
+  if (model_->keeps_path()) keep_path(ray, buffer_[slot].warp_slot, lane);
+  work_of(slot, lane) = model_->settle(ray);
+}
+
+void StackMover::visited(const Visit& visit) {
+  work_of(visit.slot, visit.lane) = model_->settle(visit.ray);
+}
+
+// Model: a ray that a second ray of its lane has overtaken while it waited for a shader (a ray query in an
+// any-hit shader) loses its path; the rest of its stack then counts as on chip.
+void StackMover::keep_path(RayState& ray, uint32_t warp_slot, int lane) {
+  if (paths_.size() <= warp_slot) paths_.resize(warp_slot + 1);
+  if (!paths_[warp_slot]) paths_[warp_slot] = std::make_unique<WarpPaths>();
+  RayPath& path = (*paths_[warp_slot])[size_t(lane)];
+  if (ray.nodes_visited == 0) {
+    GLINT_DCHECK(ray.stack_size == 1, "a new ray has {} nodes to visit", ray.stack_size);
+    path.ray = &ray;
+    path.depth = path.parent[0] = RayPath::kNoParent;
+    ray.path = &path;
+  } else if (ray.path != &path || path.ray != &ray) {
+    ray.path = nullptr;
+    ray.stack_off_chip = 0;
+  }
+}
+
+// Spills do not keep the lane waiting. Fills and repeated visits do, one after the other.
+bool StackMover::detour(uint32_t slot, int lane) {
+  StackWork& work = work_of(slot, lane);
+  for (; work.spills; --work.spills) {
+    moves_.push({slot, work.row++, uint8_t(lane), false});
+    buffer_.add_writes(slot, 1);
+  }
+  if (work.fills) {
+    --work.fills;
+    moves_.push({slot, --work.row, uint8_t(lane), true});
+    return true;
+  }
+  if (work.replayed == work.replays) return false;
+  if (work.replayed == 0) ++stats_.restarts;
+  const Fetch& node = buffer_[slot].ray_of(lane).path->node[work.replayed++];
+  buffer_.want(slot, lane, {node, this, pipe_of(node.kind)});
+  return true;
+}
+
+// A node is visited again on the way down from the root.
+void StackMover::errand_started(uint32_t, int) {
+  ++stats_.restart_nodes;
+}
+
+bool StackMover::has_request(Cycle now) const {
+  if (moves_.empty()) return false;
+  const Move& move = moves_.front();
+  return buffer_[move.slot].arrived < now && !(move.is_fill && fetches_.is_full());
+}
+
+Cycle StackMover::next_event(Cycle now) const {
+  return has_request(now) || (!fetches_.is_full() && has_reads_waiting()) ? now + 1 : kNever;
+}
+
+bool StackMover::send(Cycle now) {
+  const Move move = moves_.front();
+  const Address at = layout_.sector(buffer_[move.slot].warp_slot, move.row, move.lane),
+                offset = at & (l1_.line_bytes() - 1);
+  mem::Request request;
+  request.line = at - offset;
+  request.sectors = uint8_t(1u << offset / mem::kSectorBytes);
+  request.write = !move.is_fill;
+  request.traffic = mem::Traffic::RtStack;
+  if (move.is_fill) request.token = fetches_.open(move.slot, move.lane);
+  if (!l1_.access(now, mem::Client::RtUnit, request)) {
+    if (move.is_fill) fetches_.cancel(request.token);
+    return false;
+  }
+  moves_.pop();
+  if (move.is_fill) {
+    ++stats_.stack_fills;
+  } else {
+    ++stats_.stack_spills;
+    buffer_.write_sent(move.slot, now);
+  }
+  return true;
+}
+
+}  // namespace glint::rt

@@ -1,0 +1,36 @@
+// What a part of the RT unit adds to the steps of a ray's walk: the interface of hooks.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "rtunit/traversal/ray_state.h"
+
+namespace glint::rt {
+
+// A visit that has just been made.
+struct Visit {
+  uint32_t slot = 0;  // of the warp buffer
+  int lane = 0;
+  RayState& ray;
+  NodeKind kind = NodeKind::Internal;
+  uint32_t hits = 0;  // triangles of the node that were met within the ray
+};
+
+// RayWalk calls its hooks at each step in the order in which they were added.
+class WalkHook {
+ public:
+  virtual ~WalkHook() = default;
+  // A ray enters the unit, for the first time (no node visited yet) or after a shader.
+  virtual void entered(uint32_t /*slot*/, int /*lane*/) {}
+  // The lane is about to want its ray's next node, or to stop. Returns true when something else comes first:
+  // the hook has made the lane want a read of its own, or calls for RayWalk::go_on() when it is done.
+  virtual bool detour(uint32_t /*slot*/, int /*lane*/) { return false; }
+  // The test of a read that the hook asked for has started.
+  virtual void errand_started(uint32_t /*slot*/, int /*lane*/) {}
+  // The test of the ray's node has started; the traversal has made its step.
+  virtual void visited(const Visit&) {}
+  // The test of the lane's read has ended, whoever asked for it.
+  virtual void test_ended(uint32_t /*slot*/, int /*lane*/) {}
+};
+
+}  // namespace glint::rt

@@ -1,0 +1,95 @@
+// The warp buffer of the RT unit: the warps that are in the unit, and what each of their lanes does.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/probe.h"
+#include "memsys/ring.h"
+#include "rtunit/params.h"
+#include "rtunit/traversal/ray_state.h"
+#include "rtunit/unit/read.h"
+#include "rtunit/unit/rt_stats.h"
+
+namespace glint::rt {
+
+// A warp takes a slot of the warp buffer, or frees it (`has_left`).
+struct WarpMoved {
+  Cycle cycle = 0;
+  uint32_t buffer_slot = 0, warp_slot = 0;
+  bool has_left = false;
+  LaneMask lanes = 0;
+  const RayState* states = nullptr;
+};
+
+// A slot of the warp buffer. At any time a lane of `mask` either wants a read, waits for one, is in a test or
+// has stopped.
+struct BufferSlot {
+  bool is_used = false;
+  uint32_t warp_slot = 0;  // the core's
+  LaneMask mask = 0, wanting = 0, stopped = 0;
+  RayState* states = nullptr;
+  uint64_t age = 0;  // order of arrival
+  Cycle arrived = 0;
+  uint32_t unsent_writes = 0;     // The warp stays until the L1 has taken them.
+  size_t next_exit = 0;           // first of the buffer's exits that the warp has not passed
+  std::array<Read, kLanes> read;  // of the lanes that want a read, wait for one or are in a test
+
+  // The ray that a lane works for.
+  RayState& ray_of(int lane) const { return states[lane]; }
+  bool is_done() const { return stopped == mask && unsent_writes == 0; }
+};
+
+// Something that a warp passes after its lanes have stopped and before the core gets it back.
+class WarpExit {
+ public:
+  virtual ~WarpExit() = default;
+  // Returns whether the warp must stay. The exit then calls WarpBuffer::leave() when the warp may go on.
+  virtual bool holds(uint32_t slot, Cycle now) = 0;
+};
+
+class WarpBuffer {
+ public:
+  WarpBuffer(const Params& params, RtStats& stats);
+  // Exits are passed in the order in which they were added.
+  void add(WarpExit& exit) { exits_.push_back(&exit); }
+
+  bool has_room() const { return num_resident_ < slots_.size(); }
+  // Returns the slot that the warp takes.
+  uint32_t admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states);
+  BufferSlot& operator[](uint32_t slot) { return slots_[slot]; }
+  const BufferSlot& operator[](uint32_t slot) const { return slots_[slot]; }
+  uint32_t size() const { return uint32_t(slots_.size()); }
+
+  void want(uint32_t slot, int lane, const Read& read);
+  void stop(uint32_t slot, int lane, Cycle now);
+  void add_writes(uint32_t slot, uint32_t count) { slots_[slot].unsent_writes += count; }
+  void write_sent(uint32_t slot, Cycle now);
+  // Lets the warp pass the exits that it has not passed yet.
+  void leave(uint32_t slot, Cycle now);
+  // Gives back warps that left in earlier cycles, so a slot that becomes free now is usable from now on.
+  void retire(Cycle now);
+  std::optional<uint32_t> pop_completion();
+
+  bool has_leaving_warps() const { return !finished_.empty() || !completions_.empty(); }
+  bool has_wanting_lanes() const;
+  uint32_t num_resident() const { return num_resident_; }
+  uint32_t num_rays() const { return num_rays_; }  // those that have not stopped
+  Probe<WarpMoved>& warp_moved() { return warp_moved_; }
+
+ private:
+  const uint32_t retires_per_cycle_;
+  RtStats& stats_;
+  Probe<WarpMoved> warp_moved_;
+  std::vector<BufferSlot> slots_;
+  std::vector<WarpExit*> exits_;
+  mem::Ring<uint32_t> finished_;     // slots whose warps have passed all exits
+  mem::Ring<uint32_t> completions_;  // the core's warp slots, to be given back
+  uint32_t num_resident_ = 0, num_rays_ = 0;
+  uint64_t next_age_ = 0;
+};
+
+}  // namespace glint::rt
