@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/traversal/traversal.h"
 
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <tuple>
+#include <iterator>
 
 #include "base/check.h"
 #include "rtunit/formats/bvh2.h"
@@ -13,55 +12,13 @@
 #include "rtunit/formats/bvh6.h"
 #include "rtunit/formats/bvh8.h"
 #include "rtunit/intersection/triangle_test.h"
+#include "rtunit/traversal/hit_rules.h"
 
 namespace glint::rt {
+
+using namespace rules;
+
 namespace {
-
-bool has(const RayState& s, uint32_t flag) {
-  return (s.ray.flags & flag) != 0;
-}
-bool ends_at_first_hit(const RayState& s) {
-  return s.rules.end_at_first_hit && has(s, ray_flag::kTerminateOnFirstHit);
-}
-
-void finish(RayState& s) {
-  s.status = RayStatus::Done;
-  s.stack_size = 0;
-  if (s.table) s.table->drop(s.table->used);
-}
-
-// Choice: at equal t the lowest (instance, geometry, primitive) wins, so results do not depend on the order
-// of visits.
-bool wins(const RayState& s, float t, uint32_t instance, uint32_t geometry, uint32_t primitive) {
-  if (t != s.committed.t) return t < s.committed.t;
-  return s.committed.valid() &&
-         std::tuple(instance, geometry, primitive) <
-             std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
-}
-
-// Takes out of the table what cannot become the hit any more: the ray has become shorter since it was
-// gathered.
-void drop_beaten(RayState& s) {
-  for (uint32_t rest = s.table->used; rest; rest &= rest - 1) {
-    const auto row = uint32_t(std::countr_zero(rest));
-    const Candidate& c = s.table->row[row];
-    const bool stays = c.is_procedural ? c.hit.t <= s.committed.t
-                                       : wins(s, c.hit.t, c.hit.instance, c.hit.geometry, c.hit.primitive);
-    if (!stays) s.table->drop(1u << row);
-  }
-}
-
-// There is nothing left to visit.
-void end_traversal(RayState& s) {
-  if (s.table && s.table->used) {
-    drop_beaten(s);
-    if (s.table->used) {
-      s.status = RayStatus::Gathered;
-      return;
-    }
-  }
-  finish(s);
-}
 
 // Whether the ray goes on past the candidate that it has just met.
 bool passes(RayState& s, RayStatus needed) {
@@ -72,22 +29,6 @@ bool passes(RayState& s, RayStatus needed) {
   s.table->add({s.candidate, s.candidate_procedural, s.candidate_opaque});
   if (s.table->is_full()) drop_beaten(s);
   return !s.table->is_full();
-}
-
-// Drops entries that cannot matter any more and leaves a finished bottom level, so that the top entry is the
-// next node. An entry at exactly the committed distance stays: a tie may be decided for its primitive.
-void settle(RayState& s) {
-  for (;;) {
-    if (s.stack_size == s.bottom_stack_base) {
-      s.bottom_stack_base = -1;
-      s.base = s.ray.structure;
-      s.instance_leaf = 0;
-      enter_space(s.space, s.ray.origin, s.ray.direction);
-    }
-    if (s.stack_size == 0) return end_traversal(s);
-    if (!s.rules.retest || s.stack[size_t(s.stack_size) - 1].t_enter <= s.committed.t) return;
-    --s.stack_size;
-  }
 }
 
 void push(RayState& s, NodeRef node, float t_enter) {
@@ -304,41 +245,8 @@ constexpr FormatCode code_for() {
   return {step_as<Format>, run_as<Format>, Format::kNodeBytes};
 }
 // In the order of FormatId.
-constexpr std::array<FormatCode, size_t(FormatId::Count)> kFormats{code_for<Bvh6>(), code_for<Bvh2>(),
-                                                                   code_for<Bvh4>(), code_for<Bvh8>()};
-
-// A candidate has been decided: the next of the table, or the next node.
-void go_on(RayState& s) {
-  if (s.table && s.table->used) {
-    drop_beaten(s);
-    if (s.table->used) {
-      s.status = RayStatus::Gathered;
-      return;
-    }
-  }
-  s.status = RayStatus::Traversing;
-  if (!s.rules.in_code) settle(s);
-}
-
-// The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
-void commit(RayState& s, bool end) {
-  s.committed = s.candidate;
-  end = end || ends_at_first_hit(s);
-  s.terminated = end;
-  if (s.candidate_procedural) {
-    s.attribute_slot = !s.attribute_slot;
-    s.report_accepted = true;
-    s.status = RayStatus::NeedsIntersection;  // the intersection shader runs on
-  } else if (end) {
-    finish(s);
-  } else {
-    go_on(s);
-  }
-}
-
-bool is_same_primitive(const Hit& a, const Hit& b) {
-  return a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
-}
+constexpr FormatCode kFormats[] = {code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
+static_assert(std::size(kFormats) == size_t(FormatId::Count));
 
 bool is_finite(const std::array<float, 3>& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -395,48 +303,6 @@ void break_off(RayState& s) {
 
 void run(RayState& s, const mem::AddressSpace& memory) {
   kFormats[s.format].run(s, memory);
-}
-
-void accept_candidate(RayState& s) {
-  commit(s, false);
-}
-void terminate_candidate(RayState& s) {
-  commit(s, true);
-}
-
-void ignore_candidate(RayState& s) {
-  if (s.candidate_procedural) {
-    s.report_accepted = false;
-    s.status = RayStatus::NeedsIntersection;
-    return;
-  }
-  go_on(s);
-}
-
-Report report(RayState& s, float t, uint32_t kind) {
-  s.report_accepted = false;
-  // inclusive at both ends for shaders' own hits (Vulkan: "Ray Intersection Candidate Determination")
-  const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
-  // The first accepted report ends the intersection shader, though a nearer primitive may still be looked
-  // for.
-  const bool is_over =
-      s.terminated || (has(s, ray_flag::kTerminateOnFirstHit) && is_same_primitive(s.committed, s.candidate));
-  if (is_over || !(t >= s.ray.t_min) ||
-      !(at_end_of_ray || wins(s, t, s.candidate.instance, s.candidate.geometry, s.candidate.primitive)))
-    return Report::Rejected;
-  s.candidate.t = t;
-  s.candidate.kind = kind;
-  if (!s.candidate_opaque) {
-    s.status = RayStatus::NeedsAnyHit;
-    return Report::NeedsAnyHit;
-  }
-  commit(s, false);
-  return Report::Accepted;
-}
-
-void finish_intersection(RayState& s) {
-  if (s.terminated) return finish(s);
-  go_on(s);
 }
 
 }  // namespace glint::rt

@@ -1,0 +1,89 @@
+// What a shader's answer to a candidate does to the ray (Vulkan 1.3, chapter "Ray Traversal").
+// SPDX-License-Identifier: Apache-2.0
+#include "rtunit/traversal/hit_rules.h"
+#include "rtunit/traversal/traversal.h"
+
+namespace glint::rt {
+
+using namespace rules;
+
+namespace {
+
+// A candidate has been decided: the next of the table, or the next node.
+void go_on(RayState& s) {
+  if (s.table && s.table->used) {
+    drop_beaten(s);
+    if (s.table->used) {
+      s.status = RayStatus::Gathered;
+      return;
+    }
+  }
+  s.status = RayStatus::Traversing;
+  if (!s.rules.in_code) settle(s);
+}
+
+// The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
+void commit(RayState& s, bool end) {
+  s.committed = s.candidate;
+  end = end || ends_at_first_hit(s);
+  s.terminated = end;
+  if (s.candidate_procedural) {
+    s.attribute_slot = !s.attribute_slot;
+    s.report_accepted = true;
+    s.status = RayStatus::NeedsIntersection;  // the intersection shader runs on
+  } else if (end) {
+    finish(s);
+  } else {
+    go_on(s);
+  }
+}
+
+bool is_same_primitive(const Hit& a, const Hit& b) {
+  return a.instance == b.instance && a.geometry == b.geometry && a.primitive == b.primitive;
+}
+
+}  // namespace
+
+void accept_candidate(RayState& s) {
+  commit(s, false);
+}
+void terminate_candidate(RayState& s) {
+  commit(s, true);
+}
+
+void ignore_candidate(RayState& s) {
+  if (s.candidate_procedural) {
+    s.report_accepted = false;
+    s.status = RayStatus::NeedsIntersection;
+    return;
+  }
+  go_on(s);
+}
+
+Report report(RayState& s, float t, uint32_t kind) {
+  s.report_accepted = false;
+  // inclusive at both ends for shaders' own hits (Vulkan: "Ray Intersection Candidate Determination")
+  const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
+  // The first accepted report ends the intersection shader, though a nearer primitive may still be looked
+  // for.
+  const bool is_over =
+      s.terminated || (has(s, ray_flag::kTerminateOnFirstHit) && is_same_primitive(s.committed, s.candidate));
+  if (is_over || !(t >= s.ray.t_min) ||
+      !(at_end_of_ray || wins(s, t, s.candidate.instance, s.candidate.geometry, s.candidate.primitive)))
+    return Report::Rejected;
+  s.candidate.t = t;
+  s.candidate.kind = kind;
+  if (!s.candidate_opaque) {
+    s.status = RayStatus::NeedsAnyHit;
+    return Report::NeedsAnyHit;
+  }
+  commit(s, false);
+  return Report::Accepted;
+}
+
+void finish_intersection(RayState& s) {
+  if (s.terminated) return finish(s);
+  go_on(s);
+}
+
+}  // namespace glint::rt
