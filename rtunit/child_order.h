@@ -1,4 +1,4 @@
-// In which order a ray visits the children of a node that it has hit: the interface of child orders.
+// The order in which a ray visits the children of a node: the interface of child orders.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace glint::rt {
 
-// Children of one node that the ray enters, in index order.
+// The children of one node that the ray enters, in index order.
 struct ChildHits {
   int count = 0;
   const float* t_enter = nullptr;
@@ -16,19 +16,19 @@ struct ChildHits {
 };
 
 // Contract (tests/contract/rt_child_order_test.cpp):
-//  - sort() writes each of 0 .. hits.count - 1 to `order` once, the child to be visited first to order[0];
-//  - the choice depends on the argument alone: an order has no state and serves all rays.
+//  - sort() writes each of 0 .. hits.count - 1 to `order` once, the child to be visited first to order[0].
+//  - The choice depends on the argument alone: an order has no state and serves all rays.
 class ChildOrder {
  public:
   static constexpr PolicyKind kKind{"rt.child_order", "rtunit/child_orders"};
   struct Context {};
   virtual ~ChildOrder() = default;
   virtual void sort(const ChildHits& hits, uint8_t* order) const = 0;
-  // What rays are told to use; null: nearest_first(), which is compiled into the traversal.
+  // Returns the order that rays are told to use; null: nearest_first(), which is compiled into the traversal.
   virtual const ChildOrder* for_rays() const { return this; }
 };
 
-// By distance; of equals the lower child.
+// Sorts by distance; of equal distances the lower child comes first.
 inline void nearest_first(const ChildHits& hits, uint8_t* order) {
   for (int i = 0; i < hits.count; ++i) {
     int at = i;

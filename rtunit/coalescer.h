@@ -10,15 +10,15 @@
 namespace glint::rt {
 
 // Contract (tests/contract/rt_coalescer_test.cpp):
-//  - partners() is 0, or has the bit of `picked` and of others only such that are ready;
-//  - the choice depends on the arguments alone.
+//  - partners() is 0, or has the bit of `picked` and otherwise only bits of warps that are ready.
+//  - The choice depends on the arguments alone.
 class Coalescer {
  public:
   static constexpr PolicyKind kKind{"rt.coalescing", "rtunit/coalescers"};
   struct Context {};
   virtual ~Coalescer() = default;
-  // The warps, as a mask of their slots, whose lanes that want the same node share the fetch made for a lane
-  // of `picked`. 0: no lane shares it, of its own warp neither.
+  // Returns the warps, as a mask of their slots, whose lanes share the fetch made for a lane of `picked` when
+  // they want the same node. 0: no lane shares it, not even one of the same warp.
   virtual uint64_t partners(uint32_t picked, std::span<const WarpView> warps) const = 0;
 };
 

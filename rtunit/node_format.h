@@ -1,8 +1,8 @@
-// How internal nodes are written: the interface between the builder and a node format.
+// How internal nodes are written: the interface of node formats.
 //
-// A format is one file pair in rtunit/formats/: `<name>.cpp` encodes and is registered here; `<name>.h` holds
-// a struct with kWidth, kNodeBytes and the static test() that traversal is compiled for (traversal.cpp lists
-// it by FormatId).
+// A format is one pair of files in rtunit/formats/. `<name>.cpp` encodes nodes and registers the format;
+// `<name>.h` holds a struct with kWidth, kNodeBytes and the static test() that traversal is compiled for
+// (traversal.cpp lists it by FormatId).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -31,29 +31,31 @@ struct BuildTree {
   std::vector<std::byte> leaf_bytes;
 };
 
-// A child as found in encoded bytes: for validation and tools, not for traversal.
+// A child as found in encoded bytes. Validation and tools use it, the traversal does not.
 struct DecodedChild {
   NodeRef node = 0;
   Bounds bounds;  // as the traversal sees it
 };
 
 // Contract (tests/contract/rt_node_format_test.cpp):
-//  - encode() returns the whole structure from the header on, root at block kRootBlock, header left zero.
-//  - every decoded box contains the box that was encoded; children keep their order.
-//  - leaves lie at multiples of kBlockBytes, as BuildTree has them.
-//  - the same tree gives the same bytes.
+//  - encode() returns the whole structure from the header on. The root lies at block kRootBlock; the header
+//    is left zero.
+//  - Every decoded box contains the box that was encoded; children keep their order.
+//  - Leaves lie at multiples of kBlockBytes, as BuildTree has them.
+//  - The same tree gives the same bytes.
 class NodeFormat {
  public:
   static constexpr PolicyKind kKind{"bvh.format", "rtunit/formats"};
   struct Context {};
   virtual ~NodeFormat() = default;
   virtual FormatId id() const = 0;
-  virtual uint32_t width() const = 0;  // most children of a node, at least 2
-  virtual uint32_t node_bytes()
-      const = 0;  // of an internal node: what a ray fetches; a multiple of kBlockBytes
+  // Returns the largest number of children of a node, at least 2.
+  virtual uint32_t width() const = 0;
+  // Returns the bytes of an internal node, which a ray fetches whole; a multiple of kBlockBytes.
+  virtual uint32_t node_bytes() const = 0;
   virtual std::vector<std::byte> encode(const BuildTree& tree) const = 0;
-  // Children of the internal node whose bytes start at `node`; returns how many were written to `out` (>=
-  // width() long).
+  // Writes the children of the internal node whose bytes start at `node` to `out`, which has room for width()
+  // of them. Returns their number.
   virtual uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const = 0;
 };
 

@@ -10,18 +10,18 @@
 
 namespace glint::rt {
 
-// What a policy may know of a resident warp. Slots are 0, 1, ... in the order of the span.
+// What a policy may know of a warp in the unit. The slots of the warp buffer follow each other in the span.
 struct WarpView {
-  bool ready = false;  // some lane wants a node
+  bool ready = false;  // Some lane wants a node.
   uint32_t lanes_wanting = 0;
   uint64_t age = 0;  // order of arrival: smaller is older
   Cycle arrived = 0;
 };
 
 // Contract (tests/contract/rt_ray_scheduler_test.cpp):
-//  - pick() returns the index of a ready warp, or kNone only when none is ready;
-//  - the choice depends on the arguments and the policy's own state only;
-//  - a ready warp is chosen at last when the others leave: no warp is skipped for ever while none is older.
+//  - pick() returns the index of a ready warp, or kNone only when none is ready.
+//  - The choice depends on the arguments and the policy's own state only.
+//  - A ready warp is chosen at last when the others leave: no warp is skipped for ever while none is older.
 class RayScheduler {
  public:
   static constexpr PolicyKind kKind{"rt.scheduler", "rtunit/schedulers"};

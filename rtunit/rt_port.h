@@ -1,4 +1,5 @@
-// The door between a core and its RT unit: rays go in by warp, "done" and "needs a shader" come out by warp.
+// The door between a core and its RT unit: warps go in with their rays and come out when all rays have
+// stopped.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -13,26 +14,26 @@
 namespace glint::rt {
 
 // Contract (tests/contract/rt_port_test.cpp):
-//  - submit() is called only when can_accept(); the unit then works on `states[lane]` for the lanes of
-//  `mask`,
-//    all of which are Traversing, until each is Done, needs a shader or has Gathered candidates; the storage
-//    stays the caller's and is not touched by it meanwhile.
-//  - exactly one completion comes back for each submit, at a later cycle.
-//  - a warp that needs shaders is given back whole; the core runs them, resolves the candidates
-//    (RayState::accept, ignore, terminate) and submits the still Traversing lanes again.
+//  - submit() is called only when can_accept(). The lanes of `mask` are all Traversing; the unit works on
+//    their `states[lane]` until each is Done, needs a shader or has Gathered candidates. The caller keeps the
+//    storage and does not touch it meanwhile.
+//  - Exactly one completion comes back for each submit, at a later cycle.
+//  - A warp that needs shaders is given back whole. The core runs them, decides the candidates
+//    (accept_candidate() and the others of traversal.h) and submits the lanes that still traverse again.
 class RtPort {
  public:
   virtual ~RtPort() = default;
   virtual bool can_accept() const = 0;
   virtual void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) = 0;
-  // A warp slot whose rays have all stopped, if one has by `now`; each is returned once.
+  // Returns a warp slot whose rays have all stopped by `now`, if there is one; each is returned once.
   virtual std::optional<uint32_t> pop_completion(Cycle now) = 0;
-  // Advances to `now`. Called every cycle that the core does not skip.
+  // Advances to `now`. The core calls it in every cycle that it does not skip.
   virtual void tick(Cycle now) = 0;
-  // Earliest cycle after `now` at which tick() can do anything without new input; kNever when idle.
+  // Returns the earliest cycle after `now` in which tick() can do anything without new input; kNever when
+  // idle.
   virtual Cycle next_event(Cycle now) const = 0;
-  // Lines on the warps inside and what they wait for, for a machine that is stuck; "" when there is nothing
-  // to say.
+  // Returns lines on the warps inside and what they wait for, for a machine that is stuck; "" when the unit
+  // is empty.
   virtual std::string describe() const { return {}; }
 };
 

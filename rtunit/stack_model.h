@@ -1,4 +1,4 @@
-// Where a ray's stack lies and what it costs to keep it there: the interface of stack models.
+// Where the entries of a ray's stack are kept and what that costs: the interface of stack models.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,14 +14,15 @@ static_assert(kEntriesPerSector * sizeof(StackEntry) == 32);
 // What the RT unit has to do before the ray's next node. Row r of a stack in memory holds its entries 4r ..
 // 4r + 3.
 struct StackWork {
-  uint16_t row = 0;  // where the stack in memory ended: rows from here on are spilled, those below it filled
+  uint16_t row = 0;  // The stack in memory ended here: spills go to this row and up, fills come from below.
   uint16_t spills = 0;    // sectors to write
   uint16_t fills = 0;     // sectors to read, one after the other
   uint16_t replays = 0;   // nodes to visit again: RayPath::node from the root on
-  uint16_t replayed = 0;  // of them, those asked for
+  uint16_t replayed = 0;  // how many of these the lane has asked for
 };
 
-// Where stacks lie in memory: as candidate tables do (rtunit/traversal/candidate_table.h), so that lanes share lines.
+// Where stacks lie in memory. The layout is that of candidate tables (rtunit/traversal/candidate_table.h), so
+// that lanes share lines.
 struct StackLayout {
   Address base = 0;   // physical, of this core
   uint32_t rows = 0;  // sectors a ray; 0: stacks never leave the chip
@@ -32,18 +33,19 @@ struct StackLayout {
 };
 
 // Contract (tests/contract/rt_stack_model_test.cpp):
-//  - settle() is called when the ray enters the unit and after each of its visits; it changes
-//  `stack_off_chip` alone;
-//  - afterwards the ray's next entry is on chip, and never more entries than the model has room for;
-//  - every sector that is filled was spilled before, and is not filled again before it is spilled again;
-//  - a model has no state of its own and serves all rays.
+//  - settle() is called when the ray enters the unit and after each of its visits. It changes nothing but
+//    `stack_off_chip`.
+//  - Afterwards the ray's next entry is on chip, and the chip holds no more entries than the model has room
+//    for.
+//  - Every sector that is filled was spilled before, and is not filled again before it is spilled again.
+//  - A model has no state of its own and serves all rays.
 class StackModel {
  public:
   static constexpr PolicyKind kKind{"rt.stack", "rtunit/stacks"};
   struct Context {};
   virtual ~StackModel() = default;
-  virtual uint32_t rows() const { return 0; }        // of StackLayout
-  virtual bool keeps_path() const { return false; }  // rays need a RayPath
+  virtual uint32_t rows() const { return 0; }        // rows of the StackLayout
+  virtual bool keeps_path() const { return false; }  // whether rays need a RayPath
   virtual StackWork settle(RayState& state) const = 0;
 };
 

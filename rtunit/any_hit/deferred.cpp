@@ -1,5 +1,5 @@
-// Mode `deferred`: traversal runs on and gathers candidates in a table; then shaders run over it, one shader
-// at a time.
+// Any-hit mode `deferred`: the traversal runs on and gathers candidates in a table. Then shaders run over the
+// table, one shader at a time.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <bit>
@@ -13,15 +13,15 @@
 namespace glint::rt {
 namespace {
 
-// The lanes of a warp that have candidates for one shader, and of each its nearest.
+// The lanes of a warp that have candidates for one shader, and the nearest candidate of each.
 struct Group {
   uint32_t shader = AnyHitMode::kNoShader;
   LaneMask lanes = 0;
   std::array<uint8_t, kLanes> row{};
 };
 
-// Nearest first: what it may commit makes the most others drop. Of equals the one that would win
-// (traversal.cpp).
+// The nearest comes first: when it is committed, it makes the most others drop. Of equals the one comes first
+// that would win (traversal/hit_rules.h).
 bool comes_before(const Hit& a, const Hit& b) {
   return std::tie(a.t, a.instance, a.geometry, a.primitive) <
          std::tie(b.t, b.instance, b.geometry, b.primitive);
@@ -46,8 +46,8 @@ struct Groups {
   }
 };
 
-// The shader that the most lanes can run together. Vulkan-Sim's function-call coalescing makes as many calls:
-// for each shader as many as the lane with the most candidates for it has.
+// Prefers the shader that the most lanes can run together. Vulkan-Sim's function-call coalescing makes as
+// many calls: for each shader, as many as the lane with the most candidates for it has.
 bool is_better(const Group& a, const Group& b) {
   if ((a.shader == AnyHitMode::kNoShader) != (b.shader == AnyHitMode::kNoShader))
     return b.shader == AnyHitMode::kNoShader;
@@ -61,19 +61,20 @@ class Deferred final : public AnyHitMode {
   static constexpr std::string_view kDoc =
       "Rays gather candidates in tables; shaders run over them after the traversal.";
   struct Params {
-    uint32_t table_entries = 8;  // Choice: Vulkan-Sim has 1,000 and stops the run when a table is full
+    uint32_t table_entries = 8;  // Choice: Vulkan-Sim has 1,000 and stops the run when a table is full.
     static constexpr auto params() {
-      return std::tuple{
-          param(&Params::table_entries, "table_entries", "candidate",
-                "Candidates of a ray that its table holds; when it is full, their shaders run first.", 1,
-                kMaxTableRows)};
+      return std::tuple{param(
+          &Params::table_entries, "table_entries", "candidate",
+          "Number of candidates that a ray's table holds. When it is full, their shaders run before the "
+          "traversal goes on.",
+          1, kMaxTableRows)};
     }
   };
   Deferred(Params params, Context) : params_(params) {}
 
   uint32_t table_rows() const override { return params_.table_entries; }
 
-  // Model: which shader and what distance each entry has is known without reading the table.
+  // Model: the mode knows the shader and the distance of each entry without reading the table.
   void present(RayState* rays, LaneMask lanes, const ShaderOf& shader_of) const override {
     Groups groups;
     for_each_lane(lanes, [&](int lane) {

@@ -1,5 +1,5 @@
-// Mode `immediate`: a ray stops at each candidate, its shader runs, and the ray goes on, shorter by what was
-// accepted.
+// Any-hit mode `immediate`: a ray stops at each candidate, the shader runs, and the ray goes on, shorter when
+// the candidate was accepted.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

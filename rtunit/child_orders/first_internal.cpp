@@ -1,5 +1,5 @@
-// Child order `first_internal`: down the first internal child, the others from the last to the first, as
-// Vulkan-Sim 2.0 walks.
+// Child order `first_internal`: the ray goes down the first internal child and visits the others from the
+// last to the first, as in Vulkan-Sim 2.0.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -13,15 +13,16 @@ class FirstInternal final : public ChildOrder {
  public:
   static constexpr std::string_view kName = "first_internal";
   static constexpr std::string_view kDoc =
-      "The first internal child that is hit, then the other children from the last to the first, as in "
-      "Vulkan-Sim.";
+      "The first internal child that is hit comes first, then the other children from the last to the first, "
+      "as "
+      "in Vulkan-Sim.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
   FirstInternal(Params, Context) {}
 
-  // It goes on with the first internal child and pushes the others in index order (vulkan_ray_tracing.cc,
-  // traceRay).
+  // Vulkan-Sim goes on with the first internal child and pushes the others in index order
+  // (vulkan_ray_tracing.cc, traceRay).
   void sort(const ChildHits& hits, uint8_t* order) const override {
     int first = 0;
     while (first < hits.count && kind_of(hits.child[first]) != NodeKind::Internal) ++first;

@@ -1,4 +1,5 @@
-// Child order `index_order`: as the children lie in the node, for a unit that cannot sort.
+// Child order `index_order`: the ray visits the children as they lie in the node, for a unit that cannot
+// sort.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -11,7 +12,8 @@ namespace {
 class IndexOrder final : public ChildOrder {
  public:
   static constexpr std::string_view kName = "index_order";
-  static constexpr std::string_view kDoc = "As the children lie in the node, whatever their distance.";
+  static constexpr std::string_view kDoc =
+      "The children follow each other as they lie in the node, whatever their distance.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

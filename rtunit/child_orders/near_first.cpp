@@ -1,4 +1,4 @@
-// Child order `near_first`: by distance, as hardware that sorts its hits does.
+// Child order `near_first`: the ray visits the children by distance, as in hardware that sorts its hits.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -11,7 +11,8 @@ namespace {
 class NearFirst final : public ChildOrder {
  public:
   static constexpr std::string_view kName = "near_first";
-  static constexpr std::string_view kDoc = "The nearest child first; of equals the lower.";
+  static constexpr std::string_view kDoc =
+      "The nearest child comes first; of equally near children, the lower.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -1,4 +1,4 @@
-// Coalescing `within_warp`: lanes of a warp that want the same node share its fetch, as in the published
+// Coalescing `within_warp`: lanes of one warp that want the same node share its fetch, as in the published
 // simulators.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>

@@ -1,4 +1,4 @@
-// Node format `bvh2`, registration.
+// Registers the node format `bvh2`.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh2.h"
 

@@ -5,8 +5,8 @@
 
 namespace glint::rt {
 
-// Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs": both children's boxes, 48 B,
-// and two references in 64 B. Choice: planes of one axis lie together.
+// The node of Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs", holds both
+// children's boxes (48 B) and two references in 64 B. Choice: planes of one axis lie together.
 using Bvh2 = FloatBoxes<2>;
 static_assert(Bvh2::kNodeBytes == 64);
 

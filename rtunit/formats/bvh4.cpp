@@ -1,4 +1,4 @@
-// Node format `bvh4`, registration.
+// Registers the node format `bvh4`.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh4.h"
 

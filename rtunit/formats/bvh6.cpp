@@ -1,4 +1,4 @@
-// Node format `bvh6`, writing side.
+// Registers the node format `bvh6` and writes its nodes.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh6.h"
 

@@ -24,7 +24,7 @@ struct Bvh6 : QuantisedBoxes<Bvh6> {
   static constexpr uint32_t kNodeBytes = sizeof(Node);
   static_assert(kNodeBytes == 64);
 
-  // Internal nodes are as large as leaves: siblings follow each other without gaps.
+  // Internal nodes are as large as leaves, and siblings follow each other without gaps.
   class References {
    public:
     explicit References(const Node& node) : node_(node), block_(node.first_block) {}

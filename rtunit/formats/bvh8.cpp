@@ -1,4 +1,4 @@
-// Node format `bvh8`, writing side: nodes packed at 80 bytes, leaves behind them.
+// Registers the node format `bvh8` and writes its nodes, packed at 80 bytes, with the leaves behind them.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh8.h"
 

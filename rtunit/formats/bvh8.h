@@ -8,10 +8,11 @@
 
 namespace glint::rt {
 
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", figure 2: 12 B origin, 3 B
-// exponents, 1 B, two base indices of 4 B, 8 B about the children, 48 B planes; nodes and leaves in arrays of
-// their own. Model: children are visited by distance, as in every format; the paper's order by octant is not
-// there, so the byte behind the exponents counts the children, and the kinds say which are nodes.
+// Figure 2 of "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs" gives the layout: 12
+// B for the origin, 3 B for exponents, 1 B, two base indices of 4 B, 8 B about the children and 48 B for
+// planes. Nodes and leaves lie in arrays of their own. Model: children are visited by distance, as in every
+// format. The paper's order by octant is missing, so the byte behind the exponents counts the children, and
+// the kinds say which are nodes.
 struct Bvh8 : QuantisedBoxes<Bvh8> {
   static constexpr int kWidth = 8;
 
@@ -19,14 +20,14 @@ struct Bvh8 : QuantisedBoxes<Bvh8> {
     std::array<float, 3> origin{};
     std::array<uint8_t, 3> exponent{};
     uint8_t num_children = 0;
-    uint32_t first_node = 0, first_leaf = 0;  // blocks of the first internal child, of the first leaf
+    uint32_t first_node = 0, first_leaf = 0;  // blocks of the first internal child and the first leaf
     std::array<uint8_t, kWidth> kind{};
     uint8_t low[3][kWidth]{}, high[3][kWidth]{};
   };
   static constexpr uint32_t kNodeBytes = sizeof(Node);
   static_assert(kNodeBytes == 80 && kNodeBytes % kBlockBytes == 0);
 
-  // References of a node's children, one after the other.
+  // Returns the references of a node's children, one after the other.
   class References {
    public:
     explicit References(const Node& node)

@@ -1,4 +1,5 @@
-// Nodes with boxes in single precision and a reference a child: what the formats without quantisation share.
+// Nodes with boxes in single precision and one reference for each child: what the formats without
+// quantisation share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
@@ -17,16 +18,17 @@ namespace glint::rt {
 template <int kChildren>
 struct FloatBoxes {
   static constexpr int kWidth = kChildren;
-  static constexpr NodeRef kNone = 0;  // block 0 is the header
+  static constexpr NodeRef kNone = 0;  // Block 0 is the header, so no child has this reference.
 
   struct Node {
     float low[3][kWidth]{}, high[3][kWidth]{};
-    NodeRef child[kWidth]{};  // the used ones first
+    NodeRef child[kWidth]{};  // The used ones come first.
     uint32_t pad[kWidth == 2 ? 2 : 4]{};
   };
   static constexpr uint32_t kNodeBytes = sizeof(Node);
 
-  // Children that the ray enters in [t_min, t_max], in index order. Returns how many; counts the tests.
+  // Writes the children that the ray enters in [t_min, t_max], in index order. Returns their number and
+  // counts the tests.
   static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
                   NodeRef* child, uint32_t& box_tests) {
     Node node;

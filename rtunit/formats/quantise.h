@@ -1,5 +1,5 @@
-// Boxes in 8 bits a plane: steps of a power of two from an origin, an axis at a time (Ylitie et al. 2017,
-// section 3.1).
+// Boxes in 8 bits a plane. On each axis a plane is a number of steps from an origin, and a step is a power of
+// two (Ylitie et al. 2017, section 3.1).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace glint::rt {
 
-// What turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), rounded to float
+// Turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), rounded to float
 // once.
 struct Grid {
   std::array<float, 3> origin{};
@@ -24,12 +24,13 @@ struct Grid {
   static float plane(float origin, uint8_t q, float step) { return origin + float(q) * step; }
 };
 
-// Planes of a node's children on one axis.
+// The planes of a node's children on one axis.
 struct QuantisedPlanes {
   std::span<uint8_t> low, high;
 };
 
-// With the grid's origin and exponent as they are; false when a plane does not fit in 8 bits.
+// Quantises with the grid's origin and exponent as they are. Returns false when a plane does not fit in 8
+// bits.
 inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const Grid& grid,
                                QuantisedPlanes planes) {
   const float origin = grid.origin[axis], step = grid.step(axis);
@@ -39,7 +40,7 @@ inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const
     const double high = std::ceil((double(box.high[axis]) - origin) / step);
     if (high > 255) return false;
     int q_low = int(low), q_high = int(high);
-    // the decoded plane is rounded to float: step outwards until it is not inside the box
+    // The decoded plane is rounded to float, so it moves outwards until it is not inside the box.
     while (q_low > 0 && Grid::plane(origin, uint8_t(q_low), step) > box.low[axis]) --q_low;
     while (q_high <= 255 && Grid::plane(origin, uint8_t(q_high), step) < box.high[axis]) ++q_high;
     if (q_high > 255) return false;
@@ -49,7 +50,7 @@ inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const
   return true;
 }
 
-// Sets one axis of `grid` to the finest that holds all boxes, and their planes, rounded outwards.
+// Sets one axis of `grid` to the finest steps that hold all boxes, and their planes, rounded outwards.
 inline void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, QuantisedPlanes planes) {
   float low = 0, high = 0;
   for (size_t i = 0; i < boxes.size(); ++i) {
@@ -57,7 +58,7 @@ inline void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, Qua
     high = i ? std::fmax(high, boxes[i].high[axis]) : boxes[i].high[axis];
   }
   grid.origin[axis] = low;
-  // smallest power of two with 255 steps over the extent
+  // Begins with the smallest power of two that has 255 steps over the extent.
   const double step = (double(high) - low) / 255;
   int exponent = step > 0 ? std::ilogb(step) + 127 : 1;
   for (exponent = exponent < 1 ? 1 : exponent;; ++exponent) {

@@ -15,15 +15,16 @@
 
 namespace glint::rt {
 
-// Of a format: kWidth; Node with origin, exponent, num_children, kind, low and high; and References, whose
-// next(i) is the reference of child i, asked for in order.
+// A format has kWidth; Node with origin, exponent, num_children, kind, low and high; and References, whose
+// next(i) returns the reference of child i and is called in order.
 template <class Format>
 struct QuantisedBoxes {
-  // Two SIMD registers of single precision: planes of missing children are zeros, and nobody looks at what
-  // they give.
+  // Fills two SIMD registers of single precision. Planes of missing children are zeros, and nobody looks at
+  // what they give.
   static constexpr int kPlanes = 8;
 
-  // Children that the ray enters in [t_min, t_max], in index order. Returns how many; counts the tests.
+  // Writes the children that the ray enters in [t_min, t_max], in index order. Returns their number and
+  // counts the tests.
   static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
                   NodeRef* child, uint32_t& box_tests) {
     typename Format::Node node;
@@ -58,7 +59,7 @@ struct QuantisedBoxes {
     return hits;
   }
 
-  // A node of the tree, without its references.
+  // Returns a node of the tree without its references.
   static auto boxes_of(const BuildTree& tree, const BuildTree::Node& from) {
     const std::vector<Bounds> boxes = bounds_of_children(tree, from);
     typename Format::Node node;
@@ -71,7 +72,7 @@ struct QuantisedBoxes {
     return node;
   }
 
-  // The whole structure; link(node, children, layout) sets a node's references.
+  // Returns the bytes of the whole structure; link(node, children) sets a node's references.
   template <class Link>
   static std::vector<std::byte> encode(const BuildTree& tree, const Layout& layout, Link link) {
     std::vector<std::byte> out = bytes_with_leaves(tree, layout);

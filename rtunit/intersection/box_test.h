@@ -1,17 +1,17 @@
-// The ray-box test: slabs, padded so that rounding never loses a box that the exact ray touches.
+// The ray-box test. Its slabs are padded, so that rounding never loses a box that the exact ray touches.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace glint::rt {
 
-// Ize 2013, "Robust BVH Ray Traversal": each slab distance carries at most 1.5 ulp of its own size and the
-// far one must be widened by 2 ulp. Choice: 8 ulp, on both ends, so that a box is also never entered later
-// than its own triangles are hit by the sheared test, whose distance rounds on its own: ties at equal t then
+// Each slab distance carries an error of at most 1.5 ulp, and the far one must be widened by 2 ulp (Ize 2013,
+// "Robust BVH Ray Traversal"). Choice: both ends are widened by 8 ulp, so that a box is never entered later
+// than its own triangles are hit by the sheared test, whose distance rounds on its own. Ties at equal t then
 // do not depend on the order of visits.
 inline constexpr float kSlabShrink = 1 - 8 * 0x1p-24f, kSlabGrow = 1 + 8 * 0x1p-23f;
 
-// One slab: the planes the ray meets first and last. Not-a-number (0 * inf: the ray lies in the plane) leaves
-// the interval as it is.
+// Clips the interval to one slab, given by the planes that the ray meets first and last. Not-a-number (0 *
+// inf: the ray lies in the plane) leaves the interval as it is.
 inline void clip_slab(float near_plane, float far_plane, float origin, float inverse, float& t_near,
                       float& t_far) {
   const float enter = (near_plane - origin) * inverse;
@@ -20,7 +20,7 @@ inline void clip_slab(float near_plane, float far_plane, float origin, float inv
   t_far = leave < t_far ? leave : t_far;
 }
 
-// Widens [t_near, t_far] outwards whatever the signs.
+// Widen the ends of an interval outwards whatever their signs.
 inline float widen_near(float t) {
   return t * (t > 0 ? kSlabShrink : kSlabGrow);
 }

@@ -6,7 +6,7 @@
 
 namespace glint::rt {
 
-// A space that is being walked: the ray in its coordinates and what the tests derive from it.
+// The space of the structure that is being walked: the world, or the object space of an instance.
 struct RaySpace {
   std::array<float, 3> origin{}, direction{}, inverse_direction{};
   std::array<float, 3> shear{};          // Woop et al. 2013: Sx, Sy, Sz

@@ -1,4 +1,5 @@
-// Policy `oldest_first`: the warp that entered the RT unit first sends first, as the published simulators do.
+// Ray scheduler `oldest_first`: the warp that entered the RT unit first sends first, as in the published
+// simulators.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,4 @@
-// Policy `round_robin`: resident warps take turns at the request port.
+// Ray scheduler `round_robin`: the warps in the unit take turns at the request port.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -11,7 +11,7 @@ namespace {
 class RoundRobin final : public RayScheduler {
  public:
   static constexpr std::string_view kName = "round_robin";
-  static constexpr std::string_view kDoc = "The next ready warp after the one that sent last.";
+  static constexpr std::string_view kDoc = "The next ready warp after the one that sent last sends.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

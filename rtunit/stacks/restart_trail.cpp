@@ -9,20 +9,20 @@
 namespace glint::rt {
 namespace {
 
-// Laine 2010, "Restart Trail for Stackless BVH Traversal"; Vaidyanathan et al. 2019 for wide nodes: a few
-// bits a level say which children are done. A ray whose stack is empty goes down from the root again, past
-// what is done, and its stack holds the entries that it meets on the way. Model: entries that have been cut
-// off cost one restart, however many they are; the trail needs no memory.
+// Sources: Laine 2010, "Restart Trail for Stackless BVH Traversal"; Vaidyanathan et al. 2019 for wide nodes.
+// A few bits a level say which children are done. A ray whose stack is empty goes down from the root again,
+// past what is done, and its stack holds the entries that it meets on the way. Model: entries that have been
+// cut off cost one restart, however many they are; the trail needs no memory.
 class RestartTrail final : public StackModel {
  public:
   static constexpr std::string_view kName = "restart_trail";
   static constexpr std::string_view kDoc =
-      "The newest entries are on chip, the others are found again from the root.";
+      "The newest entries are on chip; a ray finds the others again from the root.";
   struct Params {
-    uint32_t entries = 8;  // Choice: as many as `short_stack`, to compare them
+    uint32_t entries = 8;  // Choice: as many as `short_stack` has, to compare them
     static constexpr auto params() {
-      return std::tuple{
-          param(&Params::entries, "entries", "entry", "Entries of a ray on chip.", 1, kStackEntries)};
+      return std::tuple{param(&Params::entries, "entries", "entry", "Number of entries of a ray on chip.", 1,
+                              kStackEntries)};
     }
   };
   RestartTrail(Params params, Context) : params_(params) {}
@@ -35,7 +35,7 @@ class RestartTrail final : public StackModel {
     if (!state.path || has_left_stack(state)) forgotten = 0;
     if (forgotten > 0 && state.stack_size <= forgotten) {
       const int sought =
-          state.stack_size > 0 ? state.stack_size : forgotten;  // entries; the newest is sought
+          state.stack_size > 0 ? state.stack_size : forgotten;  // The newest of these entries is sought.
       work.replays = uint16_t(state.path->parent[size_t(sought) - 1] + 1);
       forgotten = 0;
     }

@@ -1,5 +1,5 @@
-// Stack model `short_stack`: the top of the stack is on chip, the rest in local memory, moved a sector at a
-// time.
+// Stack model `short_stack`: the top of the stack is on chip and the rest in local memory. Entries move a
+// sector at a time.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -9,19 +9,20 @@
 namespace glint::rt {
 namespace {
 
-// Model: entries below what a shader has cut off are read to be dropped, as hardware that keeps distances
-// with them must; what is on chip when a shader is called stays there with the rest of the ray's state.
+// Model: entries below what a shader has cut off are read and dropped, as they must be in hardware that keeps
+// distances with them. Entries that are on chip when a shader is called stay there with the rest of the ray's
+// state.
 class ShortStack final : public StackModel {
  public:
   static constexpr std::string_view kName = "short_stack";
-  static constexpr std::string_view kDoc = "The newest entries are on chip, the others in local memory.";
+  static constexpr std::string_view kDoc = "The newest entries are on chip, the others are in local memory.";
   struct Params {
-    // The smallest stack of AMD's DS_BVH_STACK instructions (RDNA 3 ISA guide, 2023: 8, 16, 32 or 64
+    // This is the smallest stack of AMD's DS_BVH_STACK instructions (RDNA 3 ISA guide, 2023: 8, 16, 32 or 64
     // entries).
     uint32_t entries = 8;
     static constexpr auto params() {
       return std::tuple{param(&Params::entries, "entries", "entry",
-                              "Entries of a ray on chip; four more spill or fill at a time.",
+                              "Number of entries of a ray on chip. Four entries spill or fill at a time.",
                               kEntriesPerSector, kStackEntries)};
     }
   };

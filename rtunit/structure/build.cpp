@@ -69,7 +69,7 @@ uint64_t num_triangles(const Geometry& g) {
   return (g.indices.empty() ? (g.positions.size() + g.stride - 12) / g.stride : g.indices.size()) / 3;
 }
 
-// The corners of a triangle, or nothing when it is inactive.
+// Returns the corners of a triangle, or nothing when it is inactive.
 std::optional<Triangle> triangle_at(const Geometry& g, uint64_t index) {
   Triangle out;
   for (size_t corner = 0; corner < 3; ++corner) {
@@ -136,8 +136,8 @@ void add_triangles(const Geometry& g, uint32_t geometry, bool pair, Leaves& leav
 void add_aabbs(const Geometry& g, uint32_t geometry, Leaves& leaves) {
   for (size_t i = 0; i < g.aabbs.size(); ++i) {
     const Bounds& box = g.aabbs[i];
-    // Vulkan: inactive when the first coordinate is not a number; Choice: also when any is infinite or the
-    // box inside out
+    // In Vulkan a box is inactive when its first coordinate is not a number. Choice: it is also inactive when
+    // any coordinate is infinite or the box is inside out.
     if (!is_finite(box) || box.low[0] > box.high[0] || box.low[1] > box.high[1] || box.low[2] > box.high[2])
       continue;
     ProceduralLeaf leaf;
@@ -150,7 +150,7 @@ void add_aabbs(const Geometry& g, uint32_t geometry, Leaves& leaves) {
   }
 }
 
-// Depth and worst-case stack of a tree, from the leaves up.
+// Finds the depth and the worst-case stack of a tree, from the leaves up.
 void measure(const BuildTree& tree, const Leaves& leaves, StructureInfo& info) {
   std::vector<uint32_t> need(tree.nodes.size()), depth(tree.nodes.size());
   std::vector<uint32_t> need_of_block(leaves.bytes.size() / kBlockBytes + 1);
@@ -159,7 +159,8 @@ void measure(const BuildTree& tree, const Leaves& leaves, StructureInfo& info) {
   for (size_t n = tree.nodes.size(); n-- > 0;) {
     const BuildTree::Node& node = tree.nodes[n];
     if (node.kind != NodeKind::Internal) {
-      need[n] = std::max(need_of_block[node.leaf_block], 1u);  // 1: the leaf again, for its second triangle
+      need[n] =
+          std::max(need_of_block[node.leaf_block], 1u);  // 1: the leaf comes again for its second triangle
       ++info.leaves;
       continue;
     }
@@ -205,12 +206,13 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves& leaves, con
   return {info, std::move(bytes)};
 }
 
-// Inverse of a 3x4 affine transform, in double and rounded once; nothing when it has none.
+// Returns the inverse of a 3x4 affine transform, computed in double and rounded once; nothing when it has
+// none.
 std::optional<std::array<float, 12>> inverse(const std::array<float, 12>& m) {
   const auto at = [&](int r, int c) { return double(m[size_t(4 * (r % 3) + c % 3)]); };
   double cofactor[3][3];
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)  // cyclic indices carry the sign
+    for (int c = 0; c < 3; ++c)  // Cyclic indices carry the sign.
       cofactor[r][c] = at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1);
   const double det = at(0, 0) * cofactor[0][0] + at(0, 1) * cofactor[0][1] + at(0, 2) * cofactor[0][2];
   if (!(std::fabs(det) > 0) || !std::isfinite(det)) return {};
@@ -228,8 +230,8 @@ std::optional<std::array<float, 12>> inverse(const std::array<float, 12>& m) {
   return out;
 }
 
-// World box of a transformed box, padded by what the rounding of the object-space ray may move it: not at all
-// without a transform, where a pad could cost a whole step of a node's planes.
+// Returns the world box of a transformed box, padded by what the rounding of the object-space ray may move
+// it. Without a transform there is no pad: it could cost a whole step of a node's planes.
 Bounds world_bounds(const std::array<float, 12>& m, const Bounds& box) {
   if (m == kIdentity) return box;
   constexpr double kPad = 8 * 0x1p-24;

@@ -17,17 +17,17 @@ namespace glint::rt {
 
 inline constexpr std::array<float, 12> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
 
-// Triangles (positions, and indices unless empty: then three positions a triangle) or AABBs. The spans are
-// only read during build_bottom(). Triangles with a not-a-number corner are inactive (Vulkan); so are those
-// of no area, which no ray can hit. Inactive ones keep their primitive index.
+// Holds triangles or AABBs. Without indices, three positions are a triangle. The spans are read only during
+// build_bottom(). Triangles with a not-a-number corner are inactive (Vulkan); so are those of no area, which
+// no ray can hit. Inactive triangles keep their primitive index.
 struct Geometry {
   std::span<const std::byte> positions;  // float3 at multiples of `stride` bytes
   uint32_t stride = 12;
   std::span<const uint32_t> indices;
   std::span<const Bounds> aabbs;                // not empty: an AABB geometry
-  std::array<float, 12> transform = kIdentity;  // of the triangles, applied at build
+  std::array<float, 12> transform = kIdentity;  // applied to the triangles at build
   bool opaque = true;
-  bool no_duplicate_any_hit = false;  // always so here: every primitive lies in one leaf
+  bool no_duplicate_any_hit = false;  // It always holds here: every primitive lies in one leaf.
 };
 struct BottomLevel {
   std::vector<Geometry> geometries;
@@ -51,7 +51,7 @@ struct BuildOptions {
         policy(&BuildOptions::format, "format",
                "How internal nodes are written, and how many children they have."),
         flag(&BuildOptions::pair_triangles, "pair_triangles",
-             "Two neighbouring triangles of a geometry share a leaf where that costs no area.")};
+             "Two neighbouring triangles of a geometry share a leaf where that adds no surface area.")};
   }
 };
 
@@ -67,23 +67,24 @@ struct StructureInfo {
   uint32_t stack_need = 0;  // stack entries that the worst ray needs, instances' bottom levels included
 };
 
-// A bottom level as bytes that may lie anywhere: all that is left of its geometry. `info.address` is not set.
+// A bottom level as bytes that may lie anywhere. They are all that is left of its geometry. `info.address` is
+// not set.
 struct EncodedBottom {
   StructureInfo info;
   std::vector<std::byte> bytes;
 };
-// UserError when an index is out of range or the tree is too deep for the ray stack.
+// Throws UserError when an index is out of range or the tree is too deep for the ray stack.
 EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input,
                             const BuildOptions& options = {});
 StructureInfo place(mem::AddressSpace& memory, const std::string& name, const EncodedBottom& bottom);
 
-// Both at once.
+// Encodes a bottom level and places it in memory.
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
                            const BuildOptions& options = {});
 
-// UserError when a transform cannot be inverted, an index is out of range, a bottom level has another node
-// format or the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and keep
-// their index.
+// Throws UserError when a transform cannot be inverted, an index is out of range, a bottom level has another
+// node format or the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and
+// keep their index.
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
                         std::span<const Instance> instances, std::span<const StructureInfo> bottoms,
                         const BuildOptions& options = {});

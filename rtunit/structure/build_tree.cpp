@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/structure/build_tree.h"
 
-#if __has_include(<embree4/rtcore.h>)  // Ubuntu 24.04; building is the same in both
+#if __has_include(<embree4/rtcore.h>)  // Ubuntu 24.04 has version 4. Building is the same in both.
 #include <cstdint>
 #include <embree4/rtcore.h>
 #include <vector>
@@ -18,7 +18,7 @@ namespace glint::rt {
 namespace {
 
 constexpr uint32_t kMaxWidth = 16;
-constexpr uint32_t kMaxDepth = 60;  // binary levels; the builder's own limit for skewed input
+constexpr uint32_t kMaxDepth = 60;  // binary levels: the builder's own limit for skewed input
 
 // A node in the builder's memory: a leaf when `num_children` is 0.
 struct RawNode {
@@ -45,7 +45,7 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   return node;
 }
 
-// Preorder: a node's index is below its children's.
+// Numbers nodes in preorder: a node's index is below its children's.
 void flatten(const RawNode* root, std::span<const BuildItem> items, BuildTree& tree) {
   struct Work {
     const RawNode* from;
@@ -105,7 +105,7 @@ void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tre
   GLINT_CHECK_LE(width, kMaxWidth);
   tree.nodes.clear();
   tree.children.clear();
-  if (items.size() < 2) {  // a root that holds the one leaf, or nothing
+  if (items.size() < 2) {  // The root holds the one leaf, or nothing.
     RawNode leaf, root;
     root.num_children = 1;
     root.child[0] = &leaf;
@@ -113,7 +113,7 @@ void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tre
     tree.nodes.push_back({empty_bounds()});
     return;
   }
-  // one thread: partitions keep their order, so the tree is the same in every run
+  // With one thread, partitions keep their order, so the tree is the same in every run.
   const RTCDevice device = rtcNewDevice("threads=1,ignore_config_files=1");
   GLINT_CHECK(device, "Embree does not start: error {}", int(rtcGetDeviceError(nullptr)));
   const RTCBVH bvh = rtcNewBVH(device);

@@ -1,4 +1,4 @@
-// The shape of a tree over boxes, by Embree's surface-area-heuristic builder.
+// Finds the shape of a tree over boxes with Embree's builder, which uses the surface-area heuristic.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -15,8 +15,8 @@ struct BuildItem {
   uint32_t leaf_block = 0;
 };
 
-// Fills tree.nodes and tree.children, parents before children; one leaf an item, at most `width` children a
-// node, the root internal. The same items give the same tree.
+// Fills tree.nodes and tree.children, parents before children. Each item becomes a leaf, each node has at
+// most `width` children, and the root is internal. The same items give the same tree.
 void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tree);
 
 Bounds empty_bounds();

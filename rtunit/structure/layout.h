@@ -26,24 +26,25 @@ inline std::vector<Bounds> bounds_of_children(const BuildTree& tree, const Build
   return out;
 }
 
-// Calls place(child) for every child of every internal node: siblings together, the first child's subtree
-// next.
-template <class Place>
-void depth_first(const BuildTree& tree, Place place) {
+// Calls visit(child) for every child of every internal node. Siblings come together; the subtree of the first
+// comes next.
+template <class Visit>
+void depth_first(const BuildTree& tree, Visit visit) {
   std::vector<uint32_t> stack{0}, inner;
   while (!stack.empty()) {
     const BuildTree::Node& node = tree.nodes[stack.back()];
     stack.pop_back();
     inner.clear();
     for (uint32_t child : children_of(tree, node)) {
-      place(child);
+      visit(child);
       if (tree.nodes[child].kind == NodeKind::Internal) inner.push_back(child);
     }
     stack.insert(stack.end(), inner.rbegin(), inner.rend());
   }
 }
 
-// Depth first; the children of a node follow each other without gaps, leaves among internal nodes.
+// Lays nodes out depth first. The children of a node follow each other without gaps, leaves among internal
+// nodes.
 inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), sizeof(StructureHeader) + node_bytes};
   out.block[0] = kRootBlock;
@@ -55,8 +56,8 @@ inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
   return out;
 }
 
-// Depth first, internal nodes packed; behind them the leaves, at multiples of their own 64 bytes. Internal
-// children of a node follow each other without gaps, and so do its leaves.
+// Lays internal nodes out depth first and packed, and the leaves behind them at multiples of their own 64
+// bytes. Internal children of a node follow each other without gaps, and so do its leaves.
 inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), 0};
   out.block[0] = kRootBlock;
@@ -74,7 +75,7 @@ inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
   return out;
 }
 
-// The structure's bytes with all leaves in place; header and internal nodes are zero.
+// Returns the structure's bytes with all leaves written; header and internal nodes are zero.
 inline std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Layout& layout) {
   std::vector<std::byte> out(layout.bytes);
   for (size_t n = 0; n < tree.nodes.size(); ++n) {

@@ -8,16 +8,17 @@
 
 namespace glint::rt {
 
-// Everything in a structure lies at multiples of a block from its header; block 0 is the header itself,
-// behind it lies the root, always an internal node.
+// Everything in a structure lies at multiples of a block from its header. Block 0 is the header itself;
+// behind it lies the root, which is always an internal node.
 inline constexpr uint32_t kBlockBytes = 16;
 inline constexpr uint32_t kRootBlock = 4;
-inline constexpr uint32_t kLeafBytes = 64;  // of leaves but instances
+inline constexpr uint32_t kLeafBytes = 64;  // of a leaf that is no instance
 
-// TriangleSecond: the second triangle of a leaf whose first one waited for an any-hit shader; stacks only.
+// TriangleSecond stands only on stacks: it is the second triangle of a leaf whose first one waited for an
+// any-hit shader.
 enum class NodeKind : uint8_t { Internal, Instance, Triangle, Procedural, TriangleSecond };
 
-// Block number and kind in 32 bits: 2^29 blocks = 8 GiB a structure.
+// Holds block number and kind in 32 bits, so a structure has at most 2^29 blocks = 8 GiB.
 using NodeRef = uint32_t;
 inline constexpr int kKindBits = 3;
 constexpr NodeRef node_ref(uint32_t block, NodeKind kind) {
@@ -34,8 +35,8 @@ constexpr uint32_t leaf_bytes(NodeKind kind) {
   return kind == NodeKind::Instance ? 2 * kLeafBytes : kLeafBytes;
 }
 
-// The node formats that traversal is compiled for (rtunit/formats/). A header names one; a bottom level's is
-// that of the top level above it.
+// The node formats that traversal is compiled for (rtunit/formats/). A header names its format; a bottom
+// level has that of the top level above it.
 enum class FormatId : uint8_t { Bvh6, Bvh2, Bvh4, Bvh8, Count };
 
 struct Bounds {
@@ -55,8 +56,8 @@ struct StructureHeader {
 };
 static_assert(sizeof(StructureHeader) == kRootBlock * kBlockBytes);
 
-// One or two triangles of one geometry. The second shares an edge: its corners are picked from the four
-// vertices.
+// Holds one or two triangles of one geometry. The second shares an edge with the first: its corners are
+// picked from the four vertices.
 struct TriangleLeaf {
   std::array<std::array<float, 3>, 4> vertex;
   std::array<uint32_t, 2> primitive;
@@ -68,7 +69,7 @@ struct TriangleLeaf {
 };
 static_assert(sizeof(TriangleLeaf) == kLeafBytes);
 
-// One AABB, in full precision: an intersection shader runs only for rays that enter it.
+// Holds one AABB in full precision: an intersection shader runs only for rays that enter it.
 struct ProceduralLeaf {
   Bounds box;
   uint32_t geometry = 0, primitive = 0;
@@ -77,7 +78,8 @@ struct ProceduralLeaf {
 };
 static_assert(sizeof(ProceduralLeaf) == kLeafBytes);
 
-// An instance. Transforms are row-major 3x4. What traversal needs comes first; shaders read the rest.
+// Holds an instance. Transforms are row-major 3x4. What the traversal needs comes first; shaders read the
+// rest.
 struct InstanceLeaf {
   std::array<float, 12> world_to_object{};
   Address structure = 0;               // header of the bottom level

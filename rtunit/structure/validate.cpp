@@ -29,7 +29,7 @@ class Validation {
  public:
   explicit Validation(const mem::AddressSpace& memory) : memory_(memory) {}
 
-  // Real bounds and worst stack of a structure.
+  // The real bounds and the worst stack need of a structure.
   struct Measured {
     Bounds bounds = empty_bounds();
     uint32_t stack_need = 1;
@@ -165,7 +165,7 @@ class Validation {
     reached(0, leaf.instance);
     const Measured bottom = structure(leaf.structure, 0);
     out.stack_need = bottom.stack_need;
-    // corners in double, rounded inwards by half an ulp at most: a sound box holds them
+    // Corners are computed in double and rounded inwards by half an ulp at most, so a sound box holds them.
     for (int corner = 0; corner < 8; ++corner) {
       std::array<float, 3> p;
       for (size_t r = 0; r < 3; ++r) {

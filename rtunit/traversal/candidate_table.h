@@ -1,5 +1,5 @@
-// The candidates that a ray has met and no shader has decided: its column of a warp's table in deferred
-// any-hit mode.
+// The candidates that a ray has met and that no shader has decided. They are the ray's column of a warp's
+// table in the deferred any-hit mode.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -15,16 +15,16 @@ namespace glint::rt {
 struct Candidate {
   Hit hit;
   bool is_procedural = false;
-  bool is_opaque = false;  // procedural: its hits need no any-hit shader
+  bool is_opaque = false;  // For a procedural primitive: its hits need no any-hit shader.
 };
 
-inline constexpr uint32_t kMaxTableRows = 32;  // bits of a mask
-// Choice: an entry is a sector of eight words: t, two weights, kind and flags, instance leaf, geometry,
-// primitive, record.
+inline constexpr uint32_t kMaxTableRows = 32;  // Rows are bits of a mask.
+// Choice: an entry is a sector of eight words. They hold t, two weights, kind and flags, instance leaf,
+// geometry, primitive and record.
 inline constexpr uint32_t kTableEntryBytes = 32;
 
-// Where entries lie in memory: row r of lane l of warp slot w at base + ((w * rows + r) * 32 + l) * 32, so
-// that lanes that fill the same row share lines.
+// Where entries lie in memory. Row r of lane l of warp slot w lies at base + ((w * rows + r) * 32 + l) * 32,
+// so lanes that fill the same row share lines.
 struct TableLayout {
   Address base = 0;   // physical, of this core
   uint32_t rows = 0;  // 0: no tables
@@ -35,10 +35,10 @@ struct TableLayout {
 };
 
 struct CandidateTable {
-  std::vector<Candidate> row;  // sized by who owns the table; an entry stays in its row
+  std::vector<Candidate> row;  // The owner of the table sizes it. An entry stays in its row.
   uint32_t used = 0;           // bit r: row r holds a candidate
   uint32_t unwritten = 0;      // bit r: the RT unit has not sent it to memory yet
-  // Counted since clear().
+  // These count since clear().
   uint32_t gathered = 0;   // candidates put in
   uint32_t dropped = 0;    // taken out undecided, because the ray had ended before them
   uint32_t overflows = 0;  // times the traversal stopped because the table was full

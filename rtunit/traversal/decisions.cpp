@@ -9,7 +9,7 @@ using namespace rules;
 
 namespace {
 
-// A candidate has been decided: the next of the table, or the next node.
+// A candidate has been decided: the next one of the table follows, or the next node.
 void go_on(RayState& s) {
   if (s.table && s.table->used) {
     drop_beaten(s);
@@ -30,7 +30,7 @@ void commit(RayState& s, bool end) {
   if (s.candidate_procedural) {
     s.attribute_slot = !s.attribute_slot;
     s.report_accepted = true;
-    s.status = RayStatus::NeedsIntersection;  // the intersection shader runs on
+    s.status = RayStatus::NeedsIntersection;  // The intersection shader runs on.
   } else if (end) {
     finish(s);
   } else {
@@ -62,7 +62,8 @@ void ignore_candidate(RayState& s) {
 
 Report report(RayState& s, float t, uint32_t kind) {
   s.report_accepted = false;
-  // inclusive at both ends for shaders' own hits (Vulkan: "Ray Intersection Candidate Determination")
+  // For shaders' own hits the interval includes both ends (Vulkan, "Ray Intersection Candidate
+  // Determination").
   const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
   // The first accepted report ends the intersection shader, though a nearer primitive may still be looked
   // for.

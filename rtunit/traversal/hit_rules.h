@@ -1,4 +1,4 @@
-// Which hit of a ray counts and when its traversal is over: the rules that visits and shaders' answers share.
+// The rules of which hit counts and when a traversal is over, which visits and shaders' answers share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -45,7 +45,7 @@ inline void drop_beaten(RayState& s) {
   }
 }
 
-// There is nothing left to visit.
+// Ends the ray when there is nothing left to visit, unless candidates wait for shaders.
 inline void end_traversal(RayState& s) {
   if (s.table && s.table->used) {
     drop_beaten(s);

@@ -17,10 +17,10 @@ inline constexpr uint32_t kOpaque = 0x1, kNoOpaque = 0x2, kTerminateOnFirstHit =
 inline constexpr uint32_t kHitKindFront = 0xfe, kHitKindBack = 0xff;
 
 struct Ray {
-  std::array<float, 3> origin{}, direction{};  // world space; the direction need not have length 1
+  std::array<float, 3> origin{}, direction{};  // in world space; the direction need not have length 1
   float t_min = 0, t_max = 0;
   uint32_t flags = 0;
-  uint32_t cull_mask = 0xff;  // low 8 bits count
+  uint32_t cull_mask = 0xff;  // The low 8 bits count.
   Address structure = 0;      // virtual address of the top-level structure's header
   uint32_t sbt_offset = 0, sbt_stride = 0, miss_index = 0;
 };
@@ -43,12 +43,12 @@ struct Hit {
 
 // What a lane's traversal waits for.
 enum class RayStatus : uint8_t {
-  Idle,  // holds no ray
+  Idle,  // The lane holds no ray.
   Traversing,
-  NeedsIntersection,  // an AABB was entered: the intersection shader of `candidate` must run
-  NeedsAnyHit,        // a non-opaque candidate: its any-hit shader must run
-  Gathered,           // has candidates in its table and runs no shader: the any-hit mode presents one
-  Done,               // `committed` is final (or no hit)
+  NeedsIntersection,  // An AABB was entered: the intersection shader of `candidate` must run.
+  NeedsAnyHit,        // A candidate is not opaque: its any-hit shader must run.
+  Gathered,  // The ray has candidates in its table and runs no shader: the any-hit mode presents one.
+  Done,      // `committed` is final, or there is no hit.
 };
 
 }  // namespace glint::rt

@@ -1,4 +1,4 @@
-// The way from the root to every node that a ray still has to visit, for stacks that forget entries.
+// The nodes from the root to every node that a ray still has to visit, for stacks that forget entries.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -16,11 +16,11 @@ struct Fetch {
   bool operator==(const Fetch&) const = default;
 };
 
-// Kept by the traversal for rays that have one. node[d] is the node visited last at depth d; of a ray's
-// stack, entry i is a child of node[parent[i]]. Depths wrap at 256: no tree that fits a stack of 192 entries
-// is near it.
+// The traversal keeps it up to date for rays that have one. node[d] is the node visited last at depth d;
+// entry i of the ray's stack is a child of node[parent[i]]. Depths wrap at 256, which no tree that fits a
+// stack of 192 entries comes near.
 struct RayPath {
-  const void* ray = nullptr;  // whose it is
+  const void* ray = nullptr;  // the RayState that owns it
   static constexpr uint8_t kNoParent = 0xff;
   uint8_t depth = 0;  // of the node visited last
   std::array<uint8_t, 256> parent;

@@ -8,7 +8,7 @@
 
 namespace glint::rt {
 
-// build_top() proves that no ray can need more. How many of them are on chip is the stack model's
+// build_top() proves that no ray can need more. The stack model decides how many of them are on chip
 // (rtunit/stack_model.h).
 inline constexpr int kStackEntries = 192;
 
@@ -19,9 +19,9 @@ struct StackEntry {
   float t_enter;
 };
 
-// Only entries that were set mean anything. What lies deeper than most rays ever go is apart, made when a ray
-// first needs it and then kept: a resident thread stays below 1 KB of the host's memory, and no ray waits for
-// the heap twice.
+// Only entries that were set mean anything. Entries deeper than most rays ever go lie apart, in storage that
+// is made when a ray first needs it and then kept. A resident thread so stays below 1 KB of the host's
+// memory, and no ray waits for the heap twice.
 class RayStack {
  public:
   const StackEntry& operator[](size_t i) const { return i < kNear ? near_[i] : deep_[i - kNear]; }
@@ -41,7 +41,7 @@ class RayStack {
     deep_[i] = entry;
   }
 
-  std::array<StackEntry, kNear> near_;  // left uninitialised
+  std::array<StackEntry, kNear> near_;  // It is left uninitialised.
   std::vector<StackEntry> deep_;
 };
 

@@ -13,44 +13,47 @@
 
 namespace glint::rt {
 
-// Data: may be copied. The functions live in rtunit/traversal/traversal.h.
+// Holds data only and may be copied. The functions that work on it are in rtunit/traversal/traversal.h.
 struct RayState {
   Ray ray;
   RayStatus status = RayStatus::Idle;
-  Hit committed;  // t = t_max until a hit is confirmed
-  Hit candidate;  // while NeedsIntersection or NeedsAnyHit
+  Hit committed;  // Its t is t_max until a hit is confirmed.
+  Hit candidate;  // It means something while NeedsIntersection or NeedsAnyHit.
   TraversalRules rules;
-  bool candidate_procedural = false;  // the candidate came from an AABB: its attributes are memory
-  bool candidate_opaque = false;      // NeedsIntersection: a report is confirmed without an any-hit shader
-  bool attribute_slot = false;        // which of the two attribute buffers holds the committed attributes
-  bool report_accepted = false;       // result of the last rt.report
-  bool terminated = false;            // rt.terminate or terminate-on-first-hit: finish after this shader
-  CandidateTable* table =
-      nullptr;              // where candidates are gathered; null: the ray stops at each. Set before begin()
-  RayPath* path = nullptr;  // the RT unit's, when its stack model needs one; begin() sets null
-  uint8_t candidate_row = 0;  // of the table, that the candidate came from
-  bool broken = false;        // the structure's bytes led outside memory: the ray ended without meaning
+  bool candidate_procedural = false;  // The candidate came from an AABB: its attributes are in memory.
+  bool candidate_opaque = false;  // While NeedsIntersection: a report is confirmed without an any-hit shader.
+  bool attribute_slot = false;    // which of the two attribute buffers holds the committed attributes
+  bool report_accepted = false;   // result of the last rt.report
+  bool terminated = false;  // After rt.terminate or terminate-on-first-hit the ray ends after this shader.
+  // Where candidates are gathered. Null: the ray stops at each. It is set before begin().
+  CandidateTable* table = nullptr;
+  // The RT unit sets it when its stack model needs one; begin() sets null.
+  RayPath* path = nullptr;
+  uint8_t candidate_row = 0;  // row of the table that the candidate came from
+  bool broken = false;        // The structure's bytes led outside memory: the ray ended without a meaning.
 
   RaySpace space;             // the world, or the object space of `instance_leaf`
   Address base = 0;           // virtual address of the header of the structure being walked
   Address instance_leaf = 0;  // 0 in the top level
   uint32_t instance = kNoHit;
   uint32_t instance_flags = 0, instance_custom_index = 0, instance_sbt_record = 0;
-  int16_t stack_size = 0, bottom_stack_base = -1;  // entries below bottom_stack_base belong to the top level
+  int16_t stack_size = 0, bottom_stack_base = -1;  // Entries below bottom_stack_base belong to the top level.
   int16_t stack_peak = 0;
-  int16_t stack_off_chip = 0;  // entries at the bottom that the RT unit does not hold: the stack model's
-  uint8_t format = 0;          // FormatId of the structure
-  uint8_t node_bytes = 0;      // of its internal nodes
+  int16_t stack_off_chip =
+      0;                   // entries at the bottom that the RT unit does not hold; the stack model sets it
+  uint8_t format = 0;      // FormatId of the structure
+  uint8_t node_bytes = 0;  // of its internal nodes
 
-  // Counted by the traversal, for probes and statistics.
+  // The traversal counts these for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;
-  uint64_t unit_cycles = 0;  // in the RT unit, all stays together: the unit's, set from the first stay on
-  uint32_t hits_in_interval = 0;  // triangles met within the ray, nearer than the hit so far or not
+  uint64_t unit_cycles = 0;  // in the RT unit, all stays together; the unit sets it from the first stay on
+  uint32_t hits_in_interval =
+      0;  // triangles met within the ray's interval, whether nearer than the hit so far or not
 
-  RayStack stack;  // entries below stack_size
+  RayStack stack;  // Entries below stack_size mean something.
 };
 
-// The ray ended with entries left that nobody looks at any more.
+// Returns whether the ray ended with entries left that nobody looks at any more.
 inline bool has_left_stack(const RayState& s) {
   return s.status == RayStatus::Done &&
          (s.broken || s.terminated ||

@@ -1,4 +1,4 @@
-// Vulkan's traversal rules, node by node (Vulkan 1.3, chapter "Ray Traversal").
+// Walks a ray by Vulkan's rules, node by node (Vulkan 1.3, chapter "Ray Traversal").
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/traversal/traversal.h"
 
@@ -20,7 +20,7 @@ using namespace rules;
 
 namespace {
 
-// Whether the ray goes on past the candidate that it has just met.
+// Returns whether the ray goes on past the candidate that it has just met.
 bool passes(RayState& s, RayStatus needed) {
   if (!s.table) {
     s.status = needed;
@@ -33,7 +33,7 @@ bool passes(RayState& s, RayStatus needed) {
 
 void push(RayState& s, NodeRef node, float t_enter) {
   if (s.stack_size >= kStackEntries) [[unlikely]]
-    return break_off(s);  // only a structure that a shader has overwritten is that deep
+    return break_off(s);  // Only a structure that a shader has overwritten is that deep.
   if (s.path) [[unlikely]]
     s.path->parent[size_t(s.stack_size)] = s.path->depth;
   s.stack.set(size_t(s.stack_size++), {node, t_enter});
@@ -68,7 +68,7 @@ void visit_internal(RayState& s, const std::byte* bytes) {
     nearest_first({hits, t_enter, child}, order);
   else
     s.rules.order->sort({hits, t_enter, child}, order);
-  for (int i = hits - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);  // the first is on top
+  for (int i = hits - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);  // The first is on top.
 }
 
 void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
@@ -79,7 +79,7 @@ void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry
   const auto& m = leaf.world_to_object;
   const auto& o = s.ray.origin;
   const auto& d = s.ray.direction;
-  std::array<float, 3> origin, direction;  // not normalised: t is the same in both spaces
+  std::array<float, 3> origin, direction;  // They are not normalised, so t is the same in both spaces.
   for (size_t r = 0; r < 3; ++r) {
     origin[r] = ((m[4 * r] * o[0] + m[4 * r + 1] * o[1]) + m[4 * r + 2] * o[2]) + m[4 * r + 3];
     direction[r] = (m[4 * r] * d[0] + m[4 * r + 1] * d[1]) + m[4 * r + 2] * d[2];
@@ -95,7 +95,7 @@ void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry
   push(s, node_ref(kRootBlock, NodeKind::Internal), entry.t_enter);
 }
 
-// Opacity: the geometry's flag, overridden by the instance's, overridden by the ray's.
+// The instance's flags override the geometry's, and the ray's flags override both.
 bool is_opaque(const RayState& s, bool geometry_opaque) {
   bool opaque = geometry_opaque;
   if (s.instance_flags & instance_flag::kForceOpaque) opaque = true;
@@ -119,7 +119,7 @@ Hit candidate_of(const RayState& s, uint32_t geometry, uint32_t primitive) {
   return hit;
 }
 
-// Facing culls only triangles, and is disabled by the instance (Vulkan, "Ray Face Culling").
+// Facing culls only triangles, and the instance can disable it (Vulkan, "Ray Face Culling").
 bool culled_by_facing(const RayState& s, bool front) {
   if (s.instance_flags & instance_flag::kFacingCullDisable) return false;
   return has(s, front ? ray_flag::kCullFrontFacing : ray_flag::kCullBackFacing);
@@ -140,7 +140,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     if (!intersect_triangle(s.space, leaf.vertex[a], leaf.vertex[b], leaf.vertex[c], found)) continue;
     const bool front = found.front != ((s.instance_flags & instance_flag::kFlipFacing) != 0);
     if (culled_by_facing(s, front)) continue;
-    // Open at both ends, also when a box's hit lies at the far one.
+    // The interval is open at both ends, also when a box's hit lies at the far one.
     const bool inside = found.t > s.ray.t_min && found.t < s.ray.t_max;
     s.hits_in_interval += inside;
     if (!inside || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
@@ -185,7 +185,7 @@ void visit_procedural(RayState& s, const std::byte* bytes) {
   passes(s, RayStatus::NeedsIntersection);
 }
 
-// The node that is about to be visited is the last of its depth.
+// Notes the node that is about to be visited as the last of its depth.
 void remember(const RayState& s, RayPath& path) {
   path.depth = uint8_t(path.parent[size_t(s.stack_size) - 1] + 1);
   path.node[path.depth] = next_fetch(s);
@@ -241,10 +241,10 @@ struct FormatCode {
 template <class Format>
 constexpr FormatCode code_for() {
   static_assert(Format::kNodeBytes < 256 &&
-                Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte
+                Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte.
   return {step_as<Format>, run_as<Format>, Format::kNodeBytes};
 }
-// In the order of FormatId.
+// The code of each format, in the order of FormatId.
 constexpr FormatCode kFormats[] = {code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
 static_assert(std::size(kFormats) == size_t(FormatId::Count));
 

@@ -12,11 +12,11 @@
 namespace glint::rt {
 
 // Starts the ray in `state.ray`: resets everything else. A null structure, a not-a-number or infinite ray and
-// an empty interval end at once as a miss (Choice: Vulkan leaves them undefined). False when `ray.structure`
-// is not a top-level structure: the program's fault; the ray is then Done.
+// an empty interval end at once as a miss (Choice: Vulkan leaves them undefined). Returns false when
+// `ray.structure` is not a top-level structure, which is the program's fault; the ray is then Done.
 bool begin(RayState& state, const mem::AddressSpace& memory);
 
-// What step() must be given next. Only while Traversing.
+// Returns the node that step() must be given next. It may be called only while Traversing.
 inline Fetch next_fetch(const RayState& state) {
   const NodeRef ref = state.stack[size_t(state.stack_size) - 1].node;
   const NodeKind kind = kind_of(ref);
@@ -27,15 +27,15 @@ inline Fetch next_fetch(const RayState& state) {
 // Visits the node of next_fetch(). Afterwards the ray is Traversing, Done, Gathered or needs a shader.
 void step(RayState& state, const std::byte* bytes);
 
-// Ends a ray whose next node lies outside memory: Done, `broken`.
+// Ends a ray whose next node lies outside memory: it is Done and `broken`.
 void break_off(RayState& state);
 
-// Steps until the ray is Done, needs a shader or has gathered candidates and can go no further without
-// shaders: the traversal has ended, or (Choice) the table is full, and the ray traverses on when all of it
-// has been decided.
+// Steps until the ray is Done, needs a shader, or has Gathered candidates and can go no further without
+// shaders. The last happens when the traversal has ended or the table is full. Choice: a ray with a full
+// table traverses on when all of the table has been decided.
 void run(RayState& state, const mem::AddressSpace& memory);
 
-// Takes a candidate of a Gathered ray out of its table: its shader is next.
+// Takes a candidate of a Gathered ray out of its table. Its shader runs next.
 inline void present(RayState& state, uint32_t row) {
   const Candidate& next = state.table->row[row];
   state.candidate = next.hit;
@@ -50,15 +50,15 @@ inline void present(RayState& state, uint32_t row) {
 // report() (each that answers NeedsAnyHit followed by one of the three), then finish_intersection().
 void accept_candidate(RayState& state);
 void ignore_candidate(RayState& state);
-void terminate_candidate(RayState& state);  // accept, and end the traversal
+void terminate_candidate(RayState& state);  // Accepts, and ends the traversal.
 
 enum class Report : uint8_t {
-  Rejected,     // outside the interval, or the traversal is over
-  Accepted,     // opaque: committed; attribute_slot has flipped
-  NeedsAnyHit,  // status is NeedsAnyHit until the candidate is decided, then NeedsIntersection again
+  Rejected,     // The hit lies outside the interval, or the traversal is over.
+  Accepted,     // The candidate is opaque: it is committed, and attribute_slot has flipped.
+  NeedsAnyHit,  // The status is NeedsAnyHit until the candidate is decided, then NeedsIntersection again.
 };
-// reportIntersectionEXT(t, kind). Sets report_accepted unless the answer is NeedsAnyHit: then the decision
-// does.
+// Does reportIntersectionEXT(t, kind). Sets report_accepted unless the answer is NeedsAnyHit: then the
+// decision does.
 Report report(RayState& state, float t, uint32_t kind);
 void finish_intersection(RayState& state);
 

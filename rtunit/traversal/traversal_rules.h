@@ -9,9 +9,9 @@ struct TraversalRules {
   // Whether kTerminateOnFirstHit ends the ray at the first hit that is found, or only lets it end once no
   // nearer one can be. Set before begin().
   bool end_at_first_hit = true;
-  bool in_code = false;  // a program walks the ray: its stack is not in RayState
-  // The RT unit that walks the ray sets these; begin() sets what is here.
-  bool retest = true;                 // entries behind the hit are dropped when they come up, not visited
+  bool in_code = false;  // A program walks the ray, so its stack is not in RayState.
+  // The RT unit that walks the ray sets these; begin() sets them to the values here.
+  bool retest = true;                 // Entries behind the hit are dropped when they come up, not visited.
   const ChildOrder* order = nullptr;  // null: nearest_first()
 };
 
