@@ -135,19 +135,19 @@ std::vector<bool> enters_in_region(const VirtualProgram& program) {
 namespace {
 
 // Returns the RestoreLive that control reaches from a SaveLive. It visits each block between them once.
-Place find_restore(const VirtualProgram& program, Place save) {
+ProgramPoint find_restore(const VirtualProgram& program, ProgramPoint save) {
   std::vector<bool> seen(program.blocks.size());
-  std::vector<Place> work{{save.block, save.index + 1}};
-  Place found;
+  std::vector<ProgramPoint> work{{save.block, save.index + 1}};
+  ProgramPoint found;
   while (!work.empty()) {
-    const Place at = work.back();
+    const ProgramPoint at = work.back();
     work.pop_back();
     const VirtualBlock& block = program.blocks[at.block];
     const auto restore =
         std::find_if(block.code.begin() + std::ptrdiff_t(at.index), block.code.end(),
                      [](const VirtualInst& inst) { return inst.kind == VirtualInst::Kind::RestoreLive; });
     if (restore != block.code.end()) {
-      const Place here{at.block, size_t(restore - block.code.begin())};
+      const ProgramPoint here{at.block, size_t(restore - block.code.begin())};
       GLINT_CHECK(found.block == kNoBlock || found == here, "'{}': a SaveLive reaches two RestoreLive",
                   program.name);
       found = here;
@@ -163,10 +163,10 @@ Place find_restore(const VirtualProgram& program, Place save) {
   return found;
 }
 
-RegisterSet live_after(const VirtualProgram& program, const Liveness& liveness, Place place) {
-  const VirtualBlock& block = program.blocks[place.block];
-  LiveWalk walk(liveness.out[place.block]);
-  for (size_t i = block.code.size(); i-- > place.index + 1;) walk.step(block.code[i]);
+RegisterSet live_after(const VirtualProgram& program, const Liveness& liveness, ProgramPoint point) {
+  const VirtualBlock& block = program.blocks[point.block];
+  LiveWalk walk(liveness.out[point.block]);
+  for (size_t i = block.code.size(); i-- > point.index + 1;) walk.step(block.code[i]);
   return walk.live();
 }
 

@@ -79,17 +79,17 @@ std::vector<float> block_weights(const VirtualProgram& program);
 // Glint if paths disagree.
 std::vector<bool> enters_in_region(const VirtualProgram& program);
 
-// Names the place of an instruction.
-struct Place {
+// Names an instruction of the program.
+struct ProgramPoint {
   BlockId block = kNoBlock;
   size_t index = 0;
-  bool operator==(const Place&) const = default;
+  bool operator==(const ProgramPoint&) const = default;
 };
 
 // Holds a SaveLive, its RestoreLive, and the registers that must survive between them because they are live
 // after both.
 struct CallRegion {
-  Place save, restore;
+  ProgramPoint save, restore;
   RegisterSet live;
 };
 std::vector<CallRegion> find_call_regions(const VirtualProgram& program, const Liveness& liveness);

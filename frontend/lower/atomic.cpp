@@ -21,12 +21,12 @@ std::string op_suffix(std::string_view name32, Part part) {
 // one lane.
 std::string op_name(const Pointer& pointer, const std::string& suffix) {
   const size_t dot = suffix.find('.');
-  switch (pointer.place) {
-    case Place::Texel:
+  switch (pointer.space) {
+    case PointerSpace::Texel:
       return fmt::format("suatom.p.{}.{}{}.trap", suffix.substr(0, dot), pointer.shape, suffix.substr(dot));
-    case Place::Global:
+    case PointerSpace::Global:
       return "atom.global." + suffix;
-    case Place::Shared:
+    case PointerSpace::Shared:
       return "atom.shared." + suffix;
     default:
       return {};
@@ -36,7 +36,7 @@ std::string op_name(const Pointer& pointer, const std::string& suffix) {
 // Emits the atomic op and returns the old value.
 Operand atomic_op(ModuleLowering& l, const std::string& name, const Pointer& pointer, Part part,
                   const Operands& operands) {
-  const bool is_texel = pointer.place == Place::Texel;
+  const bool is_texel = pointer.space == PointerSpace::Texel;
   const Pointer p = is_texel ? pointer : in_reach(l, pointer);
   const Operand old = Operand::of(l.program().new_register(class_of(part)));
   Operands all{old};
@@ -46,7 +46,7 @@ Operand atomic_op(ModuleLowering& l, const std::string& name, const Pointer& poi
     all.push_back(p.base);
   all.insert(all.end(), operands.begin(), operands.end());
   l.emit().effect(name, std::move(all), is_texel ? 0 : int32_t(p.displacement));
-  l.note_store(is_texel ? Place::Global : p.place);
+  l.note_store(is_texel ? PointerSpace::Global : p.space);
   return old;
 }
 
@@ -86,7 +86,7 @@ Operand change(ModuleLowering& l, const Pointer& pointer, Part part, std::string
                const Operands& operands) {
   const std::string name = op_name(pointer, op_suffix(name32, part));
   if (name.empty()) {
-    if (pointer.place != Place::Nowhere) l.unsupported("an atomic on memory of one lane");
+    if (pointer.space != PointerSpace::Nowhere) l.unsupported("an atomic on memory of one lane");
     return Operand::value(0);
   }
   if (isa::find_op(name) >= 0 && bytes_of(part) != 1) return atomic_op(l, name, pointer, part, operands);
@@ -127,7 +127,7 @@ void compare_exchange(ModuleLowering& l, const Instruction& inst, const Lowering
 // Model: plain loads and stores of up to 64 bits are atomic.
 void atomic_load(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
-  if (p.place == Place::Texel)
+  if (p.space == PointerSpace::Texel)
     return l.set(inst.result, {change(l, p, l.part_of(inst.type), "or.b32", {Operand::value(0)})});
   p.is_volatile = true;
   l.set(inst.result, l.load(p));
@@ -136,7 +136,7 @@ void atomic_load(ModuleLowering& l, const Instruction& inst, const LoweringRow&)
 void atomic_store(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   const Operand value = l.scalar(inst.operands[3]);
-  if (p.place == Place::Texel) {
+  if (p.space == PointerSpace::Texel) {
     change(l, p, l.part_of(l.type_of(inst.operands[3])), "exch.b32", {value});
     return;
   }
@@ -146,8 +146,8 @@ void atomic_store(ModuleLowering& l, const Instruction& inst, const LoweringRow&
 
 // Forgets values of memory that other threads may have changed, so that they are loaded again.
 void forget_memory(ModuleLowering& l) {
-  l.note_store(Place::Global);
-  l.note_store(Place::Shared);
+  l.note_store(PointerSpace::Global);
+  l.note_store(PointerSpace::Shared);
 }
 
 void fence(ModuleLowering& l, spv::Scope scope) {

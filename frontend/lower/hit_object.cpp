@@ -15,7 +15,7 @@ using isa::HitObjectValue;
 // Returns the number of an object among those of the shader.
 Operand object(ModuleLowering& l, Id id) {
   const Pointer p = l.pointer(id);
-  if (p.place != Place::RayQuery) l.unsupported("a hit object that is not a variable");
+  if (p.space != PointerSpace::RayQuery) l.unsupported("a hit object that is not a variable");
   return p.base;
 }
 
@@ -102,7 +102,7 @@ void is_of_type(ModuleLowering& l, const Instruction& inst, const LoweringRow&) 
 void get_attributes(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Operand address = local_address(l, l.pointer(inst.operands[1]));
   l.emit().effect("ho.attributes", {object(l, inst.operands[0]), address});
-  l.note_store(Place::Local);
+  l.note_store(PointerSpace::Local);
 }
 
 // Model: lanes stay in their warps. The only difference that a program can see is that fewer of its hit

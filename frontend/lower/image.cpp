@@ -159,7 +159,7 @@ void write(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   if (has_halves(l, type)) texel = to_halves(l, texel[0]);
   for (size_t i = 0; i < 4; ++i) operands.push_back(i < texel.size() ? texel[i] : Operand::value(0));
   l.emit().effect(fmt::format("sust.p.{}.v4.b32.{}", geometry->name, outside(l, type)), std::move(operands));
-  l.note_store(Place::Global);  // Choice: images and buffers may share memory
+  l.note_store(PointerSpace::Global);  // Choice: images and buffers may share memory
 }
 
 void fetch(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
@@ -221,7 +221,7 @@ void texel_pointer(ModuleLowering& l, const Instruction& inst, const LoweringRow
   Pointer p = nowhere(l.module().type(inst.type).element);
   const auto geometry = geometry_of(l, image.type, true);
   if (geometry && !texel_suffix(l, image.type).empty()) {
-    p.place = Place::Texel;
+    p.space = PointerSpace::Texel;
     p.shape = geometry->name;
     const Operand handle = l.load(image)[0];
     p.texel = integer_place(l.emit(), *geometry, handle,

@@ -202,11 +202,11 @@ std::optional<Operand> ModuleLowering::address_of(Id id) {
   const bool is_variable = module_.variables.count(id) != 0;
   if (!is_variable && !pointers_.count(id)) return std::nullopt;
   const Pointer p = pointer(id);
-  if (p.place == Place::Global)
+  if (p.space == PointerSpace::Global)
     return emitter_.value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
-  if (p.place == Place::Shared)
+  if (p.space == PointerSpace::Shared)
     return emitter_.value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
-  if (p.place == Place::Resource && layout_.is_array_of_blocks(p.type)) return buffer_entry(p);
+  if (p.space == PointerSpace::Resource && layout_.is_array_of_blocks(p.type)) return buffer_entry(p);
   return std::nullopt;
 }
 

@@ -29,10 +29,10 @@ namespace glint::frontend {
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
                                 const std::string& entry_point = {}, bool contract = false);
 
-// Says where a pointer points. AttributePair: hit attributes of two floats, which hit shaders find in %hit.u
-// and %hit.v. Resource: a descriptor; for a buffer only while the index into an array of descriptors is
-// missing. Texel: a texel of a storage image, for atomics.
-enum class Place : uint8_t {
+// Says what memory a pointer points into. AttributePair: hit attributes of two floats, which hit shaders find
+// in %hit.u and %hit.v. Resource: a descriptor; for a buffer only while the index into an array of
+// descriptors is missing. Texel: a texel of a storage image, for atomics.
+enum class PointerSpace : uint8_t {
   Local,
   Global,
   Shared,
@@ -47,7 +47,7 @@ enum class Place : uint8_t {
 
 struct Pointer {
   Id type = 0;  // type of the pointee
-  Place place = Place::Nowhere;
+  PointerSpace space = PointerSpace::Nowhere;
   // Local, Shared, Constant: 32-bit address; Global: 64-bit address; Resource, RayQuery: index.
   Operand base = Operand::value(0);
   int64_t displacement = 0;       // bytes; for Builtin and AttributePair, parts
@@ -144,9 +144,9 @@ class ModuleLowering {
   uint32_t local_offset(Id variable);  // bytes in the frame; allocated at the first use
   // Returns the number of the first query or hit object of a variable, which is assigned at the first use.
   uint32_t ray_query(Id variable);
-  void hand_over_attributes();   // copies to the buffer that the next report reads
-  uint32_t attribute_buffers();  // offset in the frame of the two buffers of 64 bytes
-  void note_store(Place place);  // loads of that place are not reused any more
+  void hand_over_attributes();          // copies to the buffer that the next report reads
+  uint32_t attribute_buffers();         // offset in the frame of the two buffers of 64 bytes
+  void note_store(PointerSpace space);  // loads of that space are not reused any more
 
   // --- Reports
   void unsupported(const std::string& what);  // at the present line
@@ -196,7 +196,7 @@ class ModuleLowering {
   bool attributes_in_frame_ = false;  // set for an intersection shader that may report more than once
   // The versions of memory decide whether a load may be reused.
   uint64_t local_version_ = 1, global_version_ = 1, shared_version_ = 1;
-  uint64_t& version_of(Place place);
+  uint64_t& version_of(PointerSpace space);
   std::map<std::tuple<uint16_t, uint32_t, std::string>, int> unsupported_;  // file, line, what: count
   std::set<Id> reported_types_;
 };

@@ -11,13 +11,13 @@
 namespace glint::frontend {
 namespace {
 
-std::string_view space_of(Place place) {
-  switch (place) {
-    case Place::Local:
+std::string_view space_of(PointerSpace space) {
+  switch (space) {
+    case PointerSpace::Local:
       return "local";
-    case Place::Shared:
+    case PointerSpace::Shared:
       return "shared";
-    case Place::Constant:
+    case PointerSpace::Constant:
       return "const";
     default:
       return "global";
@@ -99,7 +99,7 @@ Operands load_resource(ModuleLowering& l, const Pointer& p) {
 Pointer in_reach(ModuleLowering& l, Pointer p) {
   constexpr int64_t kReach = int64_t(1) << 30;
   if (p.displacement > -kReach && p.displacement < kReach) return p;
-  if (p.place == Place::Global)
+  if (p.space == PointerSpace::Global)
     p.base = l.emit().value("add.u64", {p.base, Operand::value(uint64_t(p.displacement))});
   else
     p.base = l.emit().value("add.u32", {p.base, Operand::value(uint32_t(p.displacement))});
@@ -110,38 +110,38 @@ Pointer in_reach(ModuleLowering& l, Pointer p) {
 }
 
 Operands ModuleLowering::load(const Pointer& pointer) {
-  switch (pointer.place) {
-    case Place::RayQuery:
+  switch (pointer.space) {
+    case PointerSpace::RayQuery:
       unsupported("a ray query as a value");
       [[fallthrough]];
-    case Place::Nowhere:
+    case PointerSpace::Nowhere:
       return Operands(layout_.num_parts(pointer.type), Operand::value(0));
-    case Place::Builtin: {
+    case PointerSpace::Builtin: {
       const Variable& variable = module_.variables.at(pointer.variable);
       return slice(*this, pointer,
                    load_builtin(*decorations(variable.id).builtin, module_.type(variable.type).element));
     }
-    case Place::AttributePair:
+    case PointerSpace::AttributePair:
       return slice(*this, pointer, {Operand::of(isa::Special::HitU), Operand::of(isa::Special::HitV)});
-    case Place::Resource:
+    case PointerSpace::Resource:
       return load_resource(*this, pointer);
-    case Place::Texel:
+    case PointerSpace::Texel:
       unsupported("a texel's pointer used by other than atomics");
       return Operands(layout_.num_parts(pointer.type), Operand::value(0));
-    case Place::Local:
-    case Place::Global:
-    case Place::Shared:
-    case Place::Constant:
+    case PointerSpace::Local:
+    case PointerSpace::Global:
+    case PointerSpace::Shared:
+    case PointerSpace::Constant:
       break;
   }
   const Pointer p = in_reach(*this, pointer);
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
-  const uint64_t version = p.is_volatile ? 0 : p.is_constant ? 1 : version_of(p.place);
+  const uint64_t version = p.is_volatile ? 0 : p.is_constant ? 1 : version_of(p.space);
   Operands result;
   for (size_t i = 0; i < leaves.size();) {
     const int words = words_together(leaves, i, p);
     const std::string_view shape = shape_of(leaves[i].part, words, true);
-    const Operands parts = emitter_.load(fmt::format("ld.{}.{}", space_of(p.place), shape), p.base,
+    const Operands parts = emitter_.load(fmt::format("ld.{}.{}", space_of(p.space), shape), p.base,
                                          int32_t(p.displacement + leaves[i].offset), words, version);
     for (int w = 0; w < words; ++w) {
       const bool is_bool = leaves[i + w].part == Part::Bool;
@@ -153,12 +153,13 @@ Operands ModuleLowering::load(const Pointer& pointer) {
 }
 
 void ModuleLowering::store(const Pointer& pointer, const Operands& parts) {
-  if (pointer.place == Place::Nowhere) return;
-  if (pointer.place != Place::Local && pointer.place != Place::Global && pointer.place != Place::Shared)
+  if (pointer.space == PointerSpace::Nowhere) return;
+  if (pointer.space != PointerSpace::Local && pointer.space != PointerSpace::Global &&
+      pointer.space != PointerSpace::Shared)
     return unsupported("OpStore to this kind of variable");
   const Pointer p = in_reach(*this, pointer);
-  note_store(p.place);
-  const uint64_t version = version_of(p.place);
+  note_store(p.space);
+  const uint64_t version = version_of(p.space);
   const std::vector<Leaf> leaves = layout_.leaves(p.type, p.matrix, p.component_stride);
   for (size_t i = 0; i < leaves.size();) {
     const int words = words_together(leaves, i, p);
@@ -172,19 +173,21 @@ void ModuleLowering::store(const Pointer& pointer, const Operands& parts) {
     }
     const int32_t at = int32_t(p.displacement + leaves[i].offset);
     for (int w = 0; bytes_of(leaves[i].part) == 4 && !p.is_volatile && w < words; ++w)
-      emitter_.remember(fmt::format("ld.{}.b32", space_of(p.place)), p.base, at + 4 * w, version,
+      emitter_.remember(fmt::format("ld.{}.b32", space_of(p.space)), p.base, at + 4 * w, version,
                         operands[1 + w]);
-    emitter_.effect(fmt::format("st.{}.{}", space_of(p.place), shape), std::move(operands), at);
+    emitter_.effect(fmt::format("st.{}.{}", space_of(p.space), shape), std::move(operands), at);
     i += size_t(words);
   }
 }
 
-uint64_t& ModuleLowering::version_of(Place place) {
-  return place == Place::Local ? local_version_ : place == Place::Shared ? shared_version_ : global_version_;
+uint64_t& ModuleLowering::version_of(PointerSpace space) {
+  return space == PointerSpace::Local    ? local_version_
+         : space == PointerSpace::Shared ? shared_version_
+                                         : global_version_;
 }
 
-void ModuleLowering::note_store(Place place) {
-  ++version_of(place);
+void ModuleLowering::note_store(PointerSpace space) {
+  ++version_of(space);
 }
 
 Operand ModuleLowering::buffer_entry(const Pointer& p) {
@@ -198,7 +201,7 @@ Operand ModuleLowering::buffer_entry(const Pointer& p) {
 Pointer ModuleLowering::buffer_element(Pointer p) {
   p.entry = buffer_entry(p);
   p.base = emitter_.load("ld.global.b64", p.entry, 0, 1, 1)[0];
-  p.place = Place::Global;
+  p.space = PointerSpace::Global;
   return p;
 }
 

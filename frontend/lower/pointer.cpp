@@ -20,10 +20,10 @@ Pointer ModuleLowering::buffer_pointer(const Variable& variable, Pointer p) {
     block = &module_.type(block->element);
   p.is_constant = variable.storage == spv::StorageClass::Uniform && !block->is_buffer_block;
   if (block != &module_.type(p.type)) {
-    p.place = Place::Resource;
+    p.space = PointerSpace::Resource;
     return p;
   }
-  p.place = Place::Global;
+  p.space = PointerSpace::Global;
   p.base = emitter_.load("ld.const.b64", Operand::value(0), int32_t(descriptor), 1, 1)[0];
   return p;
 }
@@ -42,7 +42,7 @@ bool is_numbered(const Module& module, Id type) {
 Pointer ModuleLowering::interface_pointer(const Variable& variable, Pointer p) {
   using Storage = spv::StorageClass;
   if (variable.storage == Storage::ShaderRecordBufferKHR) {
-    p.place = Place::Global;
+    p.space = PointerSpace::Global;
     p.base =
         emitter_.value("pack.b64", {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
     p.is_constant = true;  // in Vulkan, shaders only read the shader record
@@ -50,12 +50,13 @@ Pointer ModuleLowering::interface_pointer(const Variable& variable, Pointer p) {
   }
   if (variable.storage == Storage::HitAttributeKHR) {
     const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};
-    p.place = is_pair && stage() != isa::Stage::Intersection ? Place::AttributePair : Place::Local;
+    p.space =
+        is_pair && stage() != isa::Stage::Intersection ? PointerSpace::AttributePair : PointerSpace::Local;
     p.base = attributes_in_frame_ ? Operand::stack_pointer() : Operand::of(isa::Special::Attribute);
     if (attributes_in_frame_) p.displacement = local_offset(variable.id);
     return p;
   }
-  p.place = Place::Local;
+  p.space = PointerSpace::Local;
   p.base = Operand::of(isa::Special::Payload);
   return p;
 }
@@ -66,7 +67,7 @@ Pointer ModuleLowering::variable_pointer(const Variable& variable) {
   p.type = module_.type(variable.type).element;
   p.variable = variable.id;
   if (is_numbered(module_, p.type)) {
-    p.place = Place::RayQuery;
+    p.space = PointerSpace::RayQuery;
     p.base = Operand::value(ray_query(variable.id));
     return p;
   }
@@ -81,7 +82,7 @@ Pointer ModuleLowering::variable_pointer(const Variable& variable) {
     case Storage::RayPayloadKHR:
     case Storage::CallableDataKHR:
     case Storage::HitObjectAttributeNV:
-      p.place = Place::Local;
+      p.space = PointerSpace::Local;
       p.base = Operand::stack_pointer();
       p.displacement = local_offset(variable.id);
       return p;
@@ -94,20 +95,20 @@ Pointer ModuleLowering::variable_pointer(const Variable& variable) {
     case Storage::Uniform:
       return buffer_pointer(variable, p);
     case Storage::Workgroup:
-      p.place = Place::Shared;
+      p.space = PointerSpace::Shared;
       p.displacement = shared_offset(variable.id);
       return p;
     case Storage::PushConstant:
-      p.place = Place::Constant;
+      p.space = PointerSpace::Constant;
       p.displacement = isa::kPushConstantOffset;
       p.is_constant = true;
       return p;
     case Storage::UniformConstant:
-      p.place = Place::Resource;
+      p.space = PointerSpace::Resource;
       return p;
     case Storage::Input:
       if (d.builtin)
-        p.place = Place::Builtin;
+        p.space = PointerSpace::Builtin;
       else
         unsupported(fmt::format("input variable {}", module_.name_of(variable.id)), variable.line);
       return p;
@@ -138,11 +139,11 @@ Pointer ModuleLowering::pointer_from_value(Id id) {
   Pointer p;
   p.type = type.element;
   if (layout_.is_array_of_blocks(p.type)) {
-    p.place = Place::Resource;
+    p.space = PointerSpace::Resource;
     p.table = scalar(id);
     return p;
   }
-  p.place = type.storage == spv::StorageClass::Workgroup ? Place::Shared : Place::Global;
+  p.space = type.storage == spv::StorageClass::Workgroup ? PointerSpace::Shared : PointerSpace::Global;
   p.base = scalar(id);
   p.alignment = 4;  // the default of every access; wider parts have ops of their own
   return p;
@@ -185,7 +186,7 @@ void step_elements(ModuleLowering& l, Pointer* p, Id index, uint32_t stride) {
   p->displacement += split.addend * stride;
   if (is_constant(split.rest, 0)) return;
   p->alignment = std::min(p->alignment, 1u << std::countr_zero(stride | 16u));
-  p->base = l.emit().value(p->place == Place::Global ? "mad.wide.s32" : "mad.lo.u32",
+  p->base = l.emit().value(p->space == PointerSpace::Global ? "mad.wide.s32" : "mad.lo.u32",
                            {split.rest, Operand::value(stride), p->base});
 }
 
@@ -238,28 +239,28 @@ void step_number(ModuleLowering& l, Pointer* p, Id index) {
   p->base = l.emit().value("add.u32", {p->base, l.emit().value("mul.lo.u32", {l.word(index), stride})});
   p->type = element;
   const Type& type = l.module().type(element);
-  if (p->place == Place::Resource && type.kind == Type::Kind::Struct) *p = l.buffer_element(*p);
+  if (p->space == PointerSpace::Resource && type.kind == Type::Kind::Struct) *p = l.buffer_element(*p);
 }
 
 // Follows the indices from operand `first` on.
 void walk_chain(ModuleLowering& l, const Instruction& inst, Pointer p, size_t first) {
-  for (size_t i = first; i < inst.operands.size() && p.place != Place::Nowhere; ++i) {
+  for (size_t i = first; i < inst.operands.size() && p.space != PointerSpace::Nowhere; ++i) {
     const Id index = inst.operands[i];
-    switch (p.place) {
-      case Place::RayQuery:
-      case Place::Resource:
+    switch (p.space) {
+      case PointerSpace::RayQuery:
+      case PointerSpace::Resource:
         step_number(l, &p, index);
         break;
-      case Place::Builtin:
-      case Place::AttributePair:
+      case PointerSpace::Builtin:
+      case PointerSpace::AttributePair:
         step_parts(l, &p, index);
         break;
-      case Place::Local:
-      case Place::Global:
-      case Place::Shared:
-      case Place::Constant:
-      case Place::Texel:
-      case Place::Nowhere:
+      case PointerSpace::Local:
+      case PointerSpace::Global:
+      case PointerSpace::Shared:
+      case PointerSpace::Constant:
+      case PointerSpace::Texel:
+      case PointerSpace::Nowhere:
         step_memory(l, &p, index);
         break;
     }
@@ -274,8 +275,8 @@ void access_chain(ModuleLowering& l, const Instruction& inst, const LoweringRow&
 
 // Returns whether the stated strides apply. In shared memory they apply only where its variables are blocks
 // (SPIR-V, "Memory Object Layout").
-bool has_stated_strides(const ModuleLowering& l, Place place) {
-  if (place != Place::Shared) return true;
+bool has_stated_strides(const ModuleLowering& l, PointerSpace space) {
+  if (space != PointerSpace::Shared) return true;
   for (const auto& [id, variable] : l.module().variables)
     if (variable.storage == spv::StorageClass::Workgroup &&
         l.module().type(l.module().type(variable.type).element).is_block)
@@ -287,9 +288,9 @@ bool has_stated_strides(const ModuleLowering& l, Place place) {
 void pointer_access_chain(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   Pointer p = l.pointer(inst.operands[0]);
   const Type& type = l.module().type(l.type_of(inst.operands[0]));
-  if (p.place != Place::Global && p.place != Place::Shared)
+  if (p.space != PointerSpace::Global && p.space != PointerSpace::Shared)
     return l.unsupported("OpPtrAccessChain of this pointer");
-  const bool is_stated = type.array_stride != 0 && has_stated_strides(l, p.place);
+  const bool is_stated = type.array_stride != 0 && has_stated_strides(l, p.space);
   step_elements(l, &p, inst.operands[1], is_stated ? type.array_stride : l.layout().size(type.element));
   walk_chain(l, inst, p, 2);
 }
@@ -325,7 +326,7 @@ void array_length(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   const Pointer p = l.pointer(inst.operands[0]);
   const Decorations& d = l.decorations(p.variable);
   const bool in_table = p.entry.kind != Operand::Kind::None;
-  if (p.place != Place::Global || (!in_table && !d.binding))
+  if (p.space != PointerSpace::Global || (!in_table && !d.binding))
     return l.unsupported("OpArrayLength of this pointer");
   const uint32_t descriptor = isa::descriptor_offset(d.set.value_or(0), d.binding.value_or(0));
   const Operand bytes =

@@ -13,7 +13,7 @@ namespace {
 // Returns the number of a query among those of the shader.
 Operand query(ModuleLowering& l, const Instruction& inst) {
   const Pointer p = l.pointer(inst.operands[0]);
-  if (p.place != Place::RayQuery) l.unsupported("a ray query that is not a variable of a function");
+  if (p.space != PointerSpace::RayQuery) l.unsupported("a ray query that is not a variable of a function");
   return p.base;
 }
 

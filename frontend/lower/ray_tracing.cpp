@@ -109,7 +109,7 @@ constexpr LoweringRow kRayTracingRows[] = {
 
 // Returns the address in a register, because SaveLive moves the stack pointer.
 Operand local_address(ModuleLowering& l, const Pointer& p) {
-  if (p.place != Place::Local) {
+  if (p.space != PointerSpace::Local) {
     l.unsupported("a payload that is not in local memory");
     return Operand::value(0);
   }
@@ -119,15 +119,15 @@ Operand local_address(ModuleLowering& l, const Pointer& p) {
 
 Operand attribute_buffers_address(ModuleLowering& l) {
   Pointer attributes;
-  attributes.place = Place::Local;
+  attributes.space = PointerSpace::Local;
   attributes.base = Operand::stack_pointer();
   attributes.displacement = l.attribute_buffers();
   return local_address(l, attributes);
 }
 
 void forget_after_call(ModuleLowering& l) {
-  l.note_store(Place::Local);
-  l.note_store(Place::Global);
+  l.note_store(PointerSpace::Local);
+  l.note_store(PointerSpace::Global);
   l.emit().forget();  // a value that is computed again need not be saved
 }
 

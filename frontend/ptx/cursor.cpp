@@ -10,7 +10,7 @@
 
 namespace glint::frontend::ptx {
 
-void Cursor::fail(Place at, const std::string& message) const {
+void Cursor::fail(TextPosition at, const std::string& message) const {
   throw UserError({file_, at.line, at.column}, message);
 }
 
@@ -19,7 +19,7 @@ void Cursor::fail(const std::string& expected) const {
   const std::string found = t.kind == Token::Kind::End       ? "the end of the file"
                             : t.kind == Token::Kind::DotWord ? fmt::format("'.{}'", t.text)
                                                              : fmt::format("'{}'", t.text);
-  fail(t.place, fmt::format("expected {}, found {}", expected, found));
+  fail(t.position, fmt::format("expected {}, found {}", expected, found));
 }
 
 bool Cursor::accept(std::string_view mark) {
@@ -89,7 +89,7 @@ uint64_t Cursor::binary(int least, const std::string& what) {
     next();
     const uint64_t right = binary(strength, what);
     if (right == 0 && (op.text == "/" || op.text == "%"))
-      fail(op.place, "division by zero in a constant expression");
+      fail(op.position, "division by zero in a constant expression");
     left = apply(op.text, left, right);
   }
   return left;
@@ -118,7 +118,7 @@ Operand Cursor::operand() {
   if (!is_mark("|")) return first;
   Operand pair;
   pair.kind = Operand::Kind::Pair;
-  pair.place = first.place;
+  pair.position = first.position;
   pair.parts.push_back(std::move(first));
   while (accept("|")) pair.parts.push_back(simple_operand());
   return pair;
@@ -135,7 +135,7 @@ std::vector<Operand> Cursor::list_until(std::string_view mark) {
 
 Operand Cursor::simple_operand() {
   Operand out;
-  out.place = peek().place;
+  out.position = peek().position;
   if (is_mark("{") || is_mark("(")) {
     out.kind = is_mark("{") ? Operand::Kind::Vector : Operand::Kind::List;
     next();
@@ -158,7 +158,7 @@ Operand Cursor::simple_operand() {
 
 Operand Cursor::number_operand() {
   Operand out;
-  out.place = peek().place;
+  out.position = peek().position;
   const bool negative =
       is_mark("-") && (peek(1).kind == Token::Kind::Float32 || peek(1).kind == Token::Kind::Float64);
   if (negative) next();
@@ -177,10 +177,10 @@ Operand Cursor::number_operand() {
 Operand Cursor::address_operand() {
   Operand out;
   out.kind = Operand::Kind::Address;
-  out.place = peek().place;
+  out.position = peek().position;
   expect("[");
   out.parts = list_until("]");
-  if (out.parts.empty()) fail(out.place, "an address needs a base");
+  if (out.parts.empty()) fail(out.position, "an address needs a base");
   Operand& base = out.parts.front();
   out.offset = std::exchange(base.offset, 0);
   return out;

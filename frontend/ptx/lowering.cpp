@@ -38,7 +38,7 @@ VirtualProgram KernelLowering::run() {
   scopes_.push_back({{}, {}, true});
   place_parameters();
   place_variables();
-  line_.line = uint32_t(entry_.place.line);
+  line_.line = uint32_t(entry_.position.line);
   const BlockId first = new_block("");
   const BlockId body = new_block(entry_.name);
   begin(first);
@@ -51,8 +51,8 @@ VirtualProgram KernelLowering::run() {
   for (const DraftBlock& block : draft_.blocks)
     for (BlockId next : block.successors())
       if (std::find(draft_.layout.begin(), draft_.layout.end(), next) == draft_.layout.end())
-        error(entry_.place, fmt::format("label '{}' is the target of a branch but is not defined",
-                                        draft_.blocks[next].name));
+        error(entry_.position, fmt::format("label '{}' is the target of a branch but is not defined",
+                                           draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
   if (options_.shape) {
@@ -179,7 +179,7 @@ Symbol KernelLowering::module_variable(const Declaration& d) {
   }
   if (d.is_extern)
     no_support(
-        d.place,
+        d.position,
         fmt::format("variable '{}' belongs to another module, and Glint does not link modules", d.name));
   ModuleVariable variable;
   variable.name = d.name;
@@ -197,8 +197,8 @@ Symbol KernelLowering::module_variable(const Declaration& d) {
       variable.initial.push_back(value.symbol.empty() ? std::byte(value.value >> (8 * i)) : std::byte{});
   }
   if (variable.initial.size() > variable.bytes)
-    error(d.place, fmt::format("'{}' has {} bytes, but values for {}", d.name, variable.bytes,
-                               variable.initial.size()));
+    error(d.position, fmt::format("'{}' has {} bytes, but values for {}", d.name, variable.bytes,
+                                  variable.initial.size()));
   kernel_.variables.push_back(std::move(variable));
   return symbol;
 }
@@ -252,7 +252,7 @@ void KernelLowering::predeclare_labels(const std::vector<Statement>& list) {
     if (symbol.kind == Symbol::Kind::Label) symbol.block = new_block(s.label);
     symbol.targets = &s.targets;
     if (!scopes_.back().names.emplace(s.label, symbol).second)
-      error(s.place, fmt::format("label '{}' is defined twice", s.label));
+      error(s.position, fmt::format("label '{}' is defined twice", s.label));
   }
 }
 
@@ -261,7 +261,7 @@ void KernelLowering::statements(const std::vector<Statement>& list) {
     switch (s.kind) {
       case Statement::Kind::Label: {
         const BlockId block = scopes_.back().names.at(s.label).block;
-        line_.line = uint32_t(s.place.line);
+        line_.line = uint32_t(s.position.line);
         end_goto(block);
         begin(block);
         break;
@@ -290,7 +290,7 @@ void KernelLowering::declare(const Declaration& d) {
   symbol.type = d.type;
   symbol.space = d.space;
   if (d.space == VariableSpace::Register) {
-    if (d.type.bits > 64) return no_support(d.place, fmt::format("registers of {} bits", d.type.bits));
+    if (d.type.bits > 64) return no_support(d.position, fmt::format("registers of {} bits", d.type.bits));
     if (d.range) {
       scopes_.back().ranges.push_back(&d);
       return;
@@ -311,7 +311,7 @@ void KernelLowering::declare(const Declaration& d) {
     } else if (d.space == VariableSpace::Shared && !d.is_extern) {
       symbol.address = shared_.at(&d);
     } else {
-      return no_support(d.place,
+      return no_support(d.position,
                         fmt::format("'{}': global, constant and extern variables inside a function", d.name));
     }
   }
@@ -346,10 +346,10 @@ const Symbol* KernelLowering::find(const std::string& name) {
 }
 
 void KernelLowering::lower(const Instruction& inst) {
-  line_.line = uint32_t(inst.place.line);
+  line_.line = uint32_t(inst.position.line);
   guard_ = kNoRegister;
   guard_negate_ = inst.guard_negated;
-  if (!inst.guard.empty()) guard_ = predicate_register(inst.guard, inst.place);
+  if (!inst.guard.empty()) guard_ = predicate_register(inst.guard, inst.position);
   if (lower_control(inst) || lower_special(inst)) return;
   lower_generic(inst);
 }

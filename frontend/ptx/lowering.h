@@ -79,11 +79,13 @@ class KernelLowering {
   void end_branch(VirtualRegister condition, bool negate, BlockId taken, BlockId next, bool uniform);
   void end_exit();
 
-  SourceLocation where(Place place) const { return {module_.file, place.line, place.column}; }
-  void error(Place place, const std::string& what, const std::string& note = {}) {
-    errors_.error(where(place), what, note);
+  SourceLocation where(TextPosition position) const { return {module_.file, position.line, position.column}; }
+  void error(TextPosition position, const std::string& what, const std::string& note = {}) {
+    errors_.error(where(position), what, note);
   }
-  void no_support(Place place, const std::string& what) { unsupported_.error(where(place), what); }
+  void no_support(TextPosition position, const std::string& what) {
+    unsupported_.error(where(position), what);
+  }
 
   // These functions are in lowering_operands.cpp.
   VirtualRegister temporary(RegisterClass c) { return program_.new_register(c); }
@@ -103,7 +105,7 @@ class KernelLowering {
   VirtualOperand widened(VirtualOperand narrow, bool with_sign);
   VirtualOperand address_of(const Symbol& symbol, int64_t offset, bool wide);
   VirtualOperand address(const Operand& o, bool wide, int64_t& imm);
-  VirtualRegister predicate_register(const std::string& name, Place place);
+  VirtualRegister predicate_register(const std::string& name, TextPosition position);
   const Symbol* register_symbol(const Operand& o);
   void finish_moves();
 
@@ -146,7 +148,7 @@ class KernelLowering {
   void inline_call(const Instruction& inst, const Function& callee, const std::vector<Operand>& results,
                    const std::vector<Operand>& arguments);
   Symbol bind_parameter(const Declaration& formal, const Operand* actual);
-  BlockId label(const std::string& name, Place place);
+  BlockId label(const std::string& name, TextPosition position);
 
   const Module& module_;
   const Function& entry_;

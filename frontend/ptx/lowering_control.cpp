@@ -22,17 +22,17 @@ bool KernelLowering::lower_control(const Instruction& inst) {
   return true;
 }
 
-BlockId KernelLowering::label(const std::string& name, Place place) {
+BlockId KernelLowering::label(const std::string& name, TextPosition position) {
   const Symbol* symbol = find(name);
   if (symbol && symbol->kind == Symbol::Kind::Label) return symbol->block;
-  error(place, fmt::format("there is no label '{}' here", name));
+  error(position, fmt::format("there is no label '{}' here", name));
   return new_block(name);
 }
 
 void KernelLowering::lower_branch(const Instruction& inst) {
   if (inst.operands.size() != 1 || inst.operands[0].kind != Operand::Kind::Name)
-    return error(inst.place, "'bra' takes a label");
-  const BlockId target = label(inst.operands[0].name, inst.operands[0].place);
+    return error(inst.position, "'bra' takes a label");
+  const BlockId target = label(inst.operands[0].name, inst.operands[0].position);
   if (guard_ == kNoRegister) return end_goto(target);
   const BlockId next = new_block("");
   end_branch(guard_, guard_negate_, target, next, has_word(inst.words, "uni"));
@@ -44,7 +44,7 @@ void KernelLowering::lower_branch(const Instruction& inst) {
 void KernelLowering::lower_indexed_branch(const Instruction& inst) {
   const Symbol* list = inst.operands.size() == 2 ? find(inst.operands[1].name) : nullptr;
   if (!list || list->kind != Symbol::Kind::Targets || list->targets->empty())
-    return error(inst.place, "'brx.idx' takes an index and the name of a .branchtargets list");
+    return error(inst.position, "'brx.idx' takes an index and the name of a .branchtargets list");
   const BlockId behind = new_block("");
   if (guard_ != kNoRegister) {
     const BlockId inside = new_block("");
@@ -56,10 +56,10 @@ void KernelLowering::lower_indexed_branch(const Instruction& inst) {
   for (size_t i = 0; i + 1 < list->targets->size(); ++i) {
     const VirtualOperand here = compute_predicate("setp.eq.u32", {index, VirtualOperand::value(i)});
     const BlockId next = new_block("");
-    end_branch(here.reg, false, label((*list->targets)[i], inst.place), next, uniform);
+    end_branch(here.reg, false, label((*list->targets)[i], inst.position), next, uniform);
     begin(next);
   }
-  end_goto(label(list->targets->back(), inst.place));
+  end_goto(label(list->targets->back(), inst.position));
   if (guard_ != kNoRegister) begin(behind);
 }
 
@@ -83,27 +83,28 @@ void KernelLowering::lower_call(const Instruction& inst) {
   const bool has_results = !inst.operands.empty() && inst.operands[0].kind == Operand::Kind::List;
   const std::vector<Operand>& results = has_results ? inst.operands[at++].parts : none;
   if (at >= inst.operands.size() || inst.operands[at].kind != Operand::Kind::Name)
-    return error(inst.place, "'call' takes the name of a function");
+    return error(inst.position, "'call' takes the name of a function");
   const Operand& name = inst.operands[at++];
   const bool has_arguments = at < inst.operands.size() && inst.operands[at].kind == Operand::Kind::List;
   const std::vector<Operand>& arguments = has_arguments ? inst.operands[at].parts : none;
   const auto f = functions_.find(name.name);
   if (f == functions_.end()) {
     if (find(name.name))
-      return no_support(name.place, "calls through a register: calls must name their function");
-    return error(name.place, fmt::format("there is no function '{}'", name.name));
+      return no_support(name.position, "calls through a register: calls must name their function");
+    return error(name.position, fmt::format("there is no function '{}'", name.name));
   }
   const Function& callee = *f->second;
   if (!callee.has_body)
     return no_support(
-        name.place,
+        name.position,
         fmt::format("function '{}' has no body in this module, and Glint does not link modules", name.name));
   if (std::any_of(calls_.begin(), calls_.end(), [&](const auto& open) { return open.first == &callee; }))
     return no_support(
-        name.place, fmt::format("'{}' calls itself, but functions are inlined into their caller", name.name));
+        name.position,
+        fmt::format("'{}' calls itself, but functions are inlined into their caller", name.name));
   if (callee.parameters.size() != arguments.size() || callee.results.size() != results.size())
     return error(
-        inst.place,
+        inst.position,
         fmt::format("'{}' takes {} parameters and gives {} results, but the call has {} and {}", name.name,
                     callee.parameters.size(), callee.results.size(), arguments.size(), results.size()));
   inline_call(inst, callee, results, arguments);
@@ -115,7 +116,7 @@ Symbol KernelLowering::bind_parameter(const Declaration& formal, const Operand* 
   const Symbol* given = actual && actual->kind == Operand::Kind::Name ? find(actual->name) : nullptr;
   if (given && given->kind == Symbol::Kind::Parameter && formal.space == VariableSpace::Param) {
     if (given->elements.size() * 4 < formal.bytes())
-      error(actual->place,
+      error(actual->position,
             fmt::format("'{}' has fewer bytes than parameter '{}'", actual->name, formal.name));
     return *given;
   }

@@ -45,19 +45,19 @@ const Operand& sink() {
   return kSink;
 }
 
-Operand name_operand(const std::string& name, Place place) {
+Operand name_operand(const std::string& name, TextPosition position) {
   Operand o;
   o.kind = Operand::Kind::Name;
   o.name = name;
-  o.place = place;
+  o.position = position;
   return o;
 }
 
-Operand integer_operand(uint64_t value, Place place) {
+Operand integer_operand(uint64_t value, TextPosition position) {
   Operand o;
   o.kind = Operand::Kind::Integer;
   o.value = value;
-  o.place = place;
+  o.position = position;
   return o;
 }
 
@@ -66,8 +66,8 @@ Operand integer_operand(uint64_t value, Place place) {
 void KernelLowering::report_no_row(const Instruction& inst) {
   const std::string name = joined(inst.words);
   const std::string near = nearest_row(name);
-  no_support(inst.place, near.empty() ? fmt::format("no op '{}'", name)
-                                      : fmt::format("no op '{}'; did you mean '{}'?", name, near));
+  no_support(inst.position, near.empty() ? fmt::format("no op '{}'", name)
+                                         : fmt::format("no op '{}'; did you mean '{}'?", name, near));
 }
 
 void KernelLowering::lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands) {
@@ -79,8 +79,8 @@ void KernelLowering::lower_row(const Instruction& inst, int row, std::vector<con
                              : 1;
   for (int n = int(written); n < num_destinations(r); ++n) operands.insert(operands.begin() + n, &sink());
   if (operands.size() != r.operands.count)
-    return error(inst.place, fmt::format("'{}' takes {} operands, not {}", joined(inst.words),
-                                         r.operands.count, operands.size()));
+    return error(inst.position, fmt::format("'{}' takes {} operands, not {}", joined(inst.words),
+                                            r.operands.count, operands.size()));
   std::vector<VirtualOperand> out;
   int64_t imm = 0;
   for (size_t i = 0; i < operands.size(); ++i) {
@@ -88,7 +88,7 @@ void KernelLowering::lower_row(const Instruction& inst, int row, std::vector<con
     const Operand& o = *operands[i];
     if (isa::slots_of(kind) > 1) {
       if (o.kind != Operand::Kind::Vector || int(o.parts.size()) != isa::slots_of(kind))
-        return error(o.place, fmt::format("expected a vector of {} operands", isa::slots_of(kind)));
+        return error(o.position, fmt::format("expected a vector of {} operands", isa::slots_of(kind)));
       const bool writes = isa::is_destination(kind);
       for (const Operand& part : o.parts)
         out.push_back(writes ? destination(part, OperandKind::Dst32, result)
@@ -197,7 +197,7 @@ void KernelLowering::join_parts(const Instruction& inst, const Operand& to,
     emit(isa::op_index("prmt.b32"),
          {destination(to, OperandKind::Dst32, types[0]), low, high, VirtualOperand::value(kLowHalves)});
   } else {
-    no_support(inst.place, fmt::format("'{}' of {} parts", joined(inst.words), parts.size()));
+    no_support(inst.position, fmt::format("'{}' of {} parts", joined(inst.words), parts.size()));
   }
   finish_moves();
 }
@@ -230,7 +230,7 @@ void KernelLowering::split_parts(const Instruction& inst, const std::vector<Oper
     // The value is copied first, because one of the parts may be written where the whole is read.
     split(compute32("mov.b32", {source(from, OperandKind::Src32, types[0])}), 0);
   } else {
-    no_support(inst.place, fmt::format("'{}' into {} parts", joined(inst.words), parts.size()));
+    no_support(inst.position, fmt::format("'{}' into {} parts", joined(inst.words), parts.size()));
   }
   finish_moves();
 }
@@ -252,7 +252,7 @@ void KernelLowering::lower_setp(const Instruction& inst) {
   const int comparison = find_row(plain);
   if (comparison < 0) return report_no_row(inst);
   if (inst.operands.size() != (combine.empty() ? 3u : 4u))
-    return error(inst.place, fmt::format("'{}' has the wrong number of operands", joined(inst.words)));
+    return error(inst.position, fmt::format("'{}' has the wrong number of operands", joined(inst.words)));
   const OperandKind kind = isa::op_table()[size_t(comparison)].operands.kind[1];
   const Type type = types_of(inst.words).back();
   const VirtualOperand a = source(inst.operands[1], kind, type), b = source(inst.operands[2], kind, type);
@@ -279,9 +279,10 @@ void KernelLowering::lower_carry(const Instruction& inst) {
     symbol.reg = temporary(RegisterClass::Predicate);
     placed_[kCarry] = symbol;
   }
-  const Operand carry = name_operand(kCarry, inst.place);
+  const Operand carry = name_operand(kCarry, inst.position);
   const isa::OpRow& r = isa::op_table()[size_t(row)];
-  if (inst.operands.empty()) return error(inst.place, fmt::format("'{}' takes operands", joined(inst.words)));
+  if (inst.operands.empty())
+    return error(inst.position, fmt::format("'{}' takes operands", joined(inst.words)));
   Instruction whole = inst;
   if (num_destinations(r) == 2) {
     whole.operands[0].kind = Operand::Kind::Pair;
@@ -313,7 +314,7 @@ void KernelLowering::lower_barrier(const Instruction& inst) {
   if (row < 0) return report_no_row(inst);
   std::vector<const Operand*> operands = flattened(inst.operands);
   // The number of threads may be left out, and then means the whole block.
-  const Operand all = integer_operand(0, inst.place);
+  const Operand all = integer_operand(0, inst.position);
   const size_t count = isa::op_table()[size_t(row)].operands.count;
   const bool is_warp = has_word(plain.words, "warp");
   const size_t threads = has_word(plain.words, "red") ? 2 : 1;
@@ -335,7 +336,7 @@ void KernelLowering::lower_old_warp_op(const Instruction& inst) {
   if (has_word(inst.words, "sync")) return lower_generic(inst);
   Instruction modern = inst;
   modern.words.insert(modern.words.begin() + 1, "sync");
-  modern.operands.push_back(integer_operand(~uint64_t{0}, inst.place));
+  modern.operands.push_back(integer_operand(~uint64_t{0}, inst.position));
   lower_generic(modern);
 }
 

@@ -32,7 +32,7 @@ void KernelLowering::lower_atomic(const Instruction& inst, const MemoryForm& for
 void KernelLowering::lower_access(const Instruction& inst, const MemoryForm& form) {
   const bool load = form.op == "ld";
   if (inst.operands.size() < 2)
-    return error(inst.place, fmt::format("'{}' takes a value and an address", joined(inst.words)));
+    return error(inst.position, fmt::format("'{}' takes a value and an address", joined(inst.words)));
   const Operand &value = inst.operands[load ? 0 : 1], &at = inst.operands[load ? 1 : 0];
   std::vector<const Operand*> parts;
   if (value.kind == Operand::Kind::Vector)
@@ -40,8 +40,8 @@ void KernelLowering::lower_access(const Instruction& inst, const MemoryForm& for
   else
     parts.push_back(&value);
   if (parts.size() != form.vector)
-    return error(value.place, fmt::format("'{}' moves {} values, but the operand has {}", joined(inst.words),
-                                          form.vector, parts.size()));
+    return error(value.position, fmt::format("'{}' moves {} values, but the operand has {}",
+                                             joined(inst.words), form.vector, parts.size()));
   if (at.kind == Operand::Kind::Address && at.parts.size() == 1 && at.parts[0].kind == Operand::Kind::Name)
     if (const Symbol* symbol = find(at.parts[0].name); symbol && symbol->kind == Symbol::Kind::Parameter)
       return access_words(inst, form, *symbol, at.offset, parts);
@@ -107,7 +107,7 @@ void KernelLowering::access_words(const Instruction& inst, const MemoryForm& for
   for (size_t i = 0; i < parts.size(); ++i) {
     const int64_t at = offset + int64_t(i * bytes);
     if (at < 0 || at % bytes != 0 || size_t(at) + bytes > words.elements.size() * 4 || bytes > 8)
-      return error(inst.place, fmt::format("{} bytes at offset {} are outside the parameter", bytes, at));
+      return error(inst.position, fmt::format("{} bytes at offset {} are outside the parameter", bytes, at));
     if (form.op == "ld")
       load_word_part(form, words, uint32_t(at), *parts[i]);
     else

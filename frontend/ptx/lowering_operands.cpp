@@ -69,22 +69,22 @@ VirtualOperand KernelLowering::widened(VirtualOperand narrow, bool with_sign) {
 const Symbol* KernelLowering::register_symbol(const Operand& o) {
   const Symbol* symbol = find(o.name);
   if (!symbol) {
-    error(o.place, fmt::format("'{}' is not declared", o.name));
+    error(o.position, fmt::format("'{}' is not declared", o.name));
   } else if (symbol->kind != Symbol::Kind::Register) {
-    error(o.place, fmt::format("'{}' is not a register", o.name));
+    error(o.position, fmt::format("'{}' is not a register", o.name));
     return nullptr;
   }
   return symbol;
 }
 
-VirtualRegister KernelLowering::predicate_register(const std::string& name, Place place) {
+VirtualRegister KernelLowering::predicate_register(const std::string& name, TextPosition position) {
   Operand o;
   o.name = name;
-  o.place = place;
+  o.position = position;
   const Symbol* symbol = register_symbol(o);
   if (!symbol) return temporary(RegisterClass::Predicate);
   if (symbol->type.kind == 'p') return symbol->reg;
-  error(place, fmt::format("'{}' is not a predicate", name));
+  error(position, fmt::format("'{}' is not a predicate", name));
   return temporary(RegisterClass::Predicate);
 }
 
@@ -94,10 +94,10 @@ VirtualOperand KernelLowering::predicate_source(const Operand& o) {
     return compute_predicate("setp.ne.u32", {VirtualOperand::value(o.value != 0), zero});
   }
   if (o.kind != Operand::Kind::Name) {
-    error(o.place, "expected a predicate");
+    error(o.position, "expected a predicate");
     return VirtualOperand::of(temporary(RegisterClass::Predicate));
   }
-  const VirtualOperand p = VirtualOperand::of(predicate_register(o.name, o.place));
+  const VirtualOperand p = VirtualOperand::of(predicate_register(o.name, o.position));
   return o.negated ? compute_predicate("not.pred", {p}) : p;
 }
 
@@ -105,7 +105,7 @@ VirtualOperand KernelLowering::predicate_source(const Operand& o) {
 VirtualOperand KernelLowering::literal(const Operand& o, bool wide, const Type& type) {
   if (o.kind == Operand::Kind::Integer) return VirtualOperand::value(wide ? o.value : uint32_t(o.value));
   if (type.bits == 16 && o.kind == Operand::Kind::Float64)
-    no_support(o.place, "decimal constants of 16-bit floats: write their bits");
+    no_support(o.position, "decimal constants of 16-bit floats: write their bits");
   if (o.kind == Operand::Kind::Float32)
     return VirtualOperand::value(
         wide ? std::bit_cast<uint64_t>(double(std::bit_cast<float>(uint32_t(o.value)))) : o.value);
@@ -155,21 +155,21 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
     const VirtualOperand special = special_source(o, wide, found);
     if (found) return special;
     if (functions_.contains(o.name)) {
-      no_support(o.place,
+      no_support(o.position,
                  fmt::format("the address of function '{}': calls must name their function", o.name));
     } else {
-      error(o.place,
+      error(o.position,
             fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
     }
     return VirtualOperand::value(0);
   }
   if (symbol->kind == Symbol::Kind::Variable) return address_of(*symbol, o.offset, wide);
   if (symbol->kind != Symbol::Kind::Register) {
-    error(o.place, fmt::format("'{}' is not an operand of this instruction", o.name));
+    error(o.position, fmt::format("'{}' is not an operand of this instruction", o.name));
     return VirtualOperand::value(0);
   }
   if (symbol->type.kind == 'p') {
-    error(o.place, fmt::format("'{}' is a predicate, but the instruction takes a number", o.name));
+    error(o.position, fmt::format("'{}' is a predicate, but the instruction takes a number", o.name));
     return VirtualOperand::value(0);
   }
   VirtualRegister reg = symbol->reg;
@@ -185,7 +185,7 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
 
 VirtualOperand KernelLowering::source(const Operand& o, OperandKind kind, const Type& type) {
   if (kind == OperandKind::SrcPred) return predicate_source(o);
-  if (o.negated) error(o.place, "'!' is allowed only before predicates");
+  if (o.negated) error(o.position, "'!' is allowed only before predicates");
   switch (o.kind) {
     case Operand::Kind::Integer:
     case Operand::Kind::Float32:
@@ -194,7 +194,7 @@ VirtualOperand KernelLowering::source(const Operand& o, OperandKind kind, const 
     case Operand::Kind::Name:
       return name_source(o, is_wide(kind));
     default:
-      error(o.place, "expected a register or a number");
+      error(o.position, "expected a register or a number");
       return VirtualOperand::value(0);
   }
 }
@@ -205,7 +205,7 @@ VirtualOperand KernelLowering::destination(const Operand& o, OperandKind kind, c
                                                             : RegisterClass::B32;
   if (o.kind == Operand::Kind::Sink) return VirtualOperand::of(temporary(wanted));
   if (o.kind != Operand::Kind::Name) {
-    error(o.place, "expected a register to write");
+    error(o.position, "expected a register to write");
     return VirtualOperand::of(temporary(wanted));
   }
   const Symbol* symbol = register_symbol(o);
@@ -219,9 +219,9 @@ VirtualOperand KernelLowering::destination(const Operand& o, OperandKind kind, c
   if (has == wanted) return VirtualOperand::of(reg);
   const VirtualOperand value = VirtualOperand::of(temporary(wanted));
   if (has == RegisterClass::Predicate || wanted == RegisterClass::Predicate) {
-    error(o.place, fmt::format("'{}' is {} predicate, but the result is {}", o.name,
-                               has == RegisterClass::Predicate ? "a" : "not a",
-                               wanted == RegisterClass::Predicate ? "a predicate" : "a number"));
+    error(o.position, fmt::format("'{}' is {} predicate, but the result is {}", o.name,
+                                  has == RegisterClass::Predicate ? "a" : "not a",
+                                  wanted == RegisterClass::Predicate ? "a predicate" : "a number"));
     return value;
   }
   const char* op = has == RegisterClass::B32 ? "cvt.u32.u64"
@@ -239,7 +239,7 @@ void KernelLowering::finish_moves() {
 // Returns the base of `[base + offset]` and stores the displacement in `imm`.
 VirtualOperand KernelLowering::address(const Operand& o, bool wide, int64_t& imm) {
   if (o.kind != Operand::Kind::Address || o.parts.size() != 1) {
-    error(o.place, "expected an address such as [%rd1+4]");
+    error(o.position, "expected an address such as [%rd1+4]");
     return VirtualOperand::value(0);
   }
   const Operand& base = o.parts.front();

@@ -104,14 +104,14 @@ class Parser {
   }
   // .file and .loc end with their line.
   void skip_line_directive() {
-    const int line = in_.peek().place.line;
-    while (!in_.at_end() && in_.peek().place.line == line) in_.next();
+    const int line = in_.peek().position.line;
+    while (!in_.at_end() && in_.peek().position.line == line) in_.next();
   }
 
   void function() {
     Function f;
     f.is_entry = in_.next().text == "entry";
-    f.place = in_.peek().place;
+    f.position = in_.peek().position;
     if (in_.is_mark("(")) f.results = parameters();
     f.name = in_.expect_word("the name of a function");
     if (in_.is_mark("(")) f.parameters = parameters();
@@ -125,7 +125,7 @@ class Parser {
     for (Function& other : module_.functions)
       if (other.name == f.name) {
         if (other.has_body && f.has_body)
-          in_.fail(f.place, fmt::format("function '{}' is defined twice", f.name));
+          in_.fail(f.position, fmt::format("function '{}' is defined twice", f.name));
         if (f.has_body) other = std::move(f);
         return;
       }
@@ -165,7 +165,7 @@ class Parser {
   // Reads everything before the name, such as `.shared .align 16 .b8`.
   Declaration declaration_head() {
     Declaration d;
-    d.place = in_.peek().place;
+    d.position = in_.peek().position;
     d.space = *space_of(in_.next().text);
     bool has_type = false;
     while (in_.is(Token::Kind::DotWord)) {
@@ -184,7 +184,7 @@ class Parser {
         d.type = *type;
         has_type = true;
       } else if (!is_pointer_ || !space_of(word)) {
-        in_.fail(d.place, fmt::format("'.{}' is not a type of variable that Glint knows", word));
+        in_.fail(d.position, fmt::format("'.{}' is not a type of variable that Glint knows", word));
       }
     }
     is_pointer_ = false;
@@ -194,7 +194,7 @@ class Parser {
 
   // Reads `name`, `name<10>`, `name[4][2]` and an initialiser such as `= { 1, 2 }`.
   void declarator(Declaration& d) {
-    d.place = in_.peek().place;
+    d.position = in_.peek().position;
     d.name = in_.expect_word("a name");
     if (in_.accept("<")) {
       d.range = uint32_t(in_.next().value);
@@ -245,7 +245,7 @@ class Parser {
         d.initial.push_back({uint64_t(o.offset), o.name});
         return;
       default:
-        in_.fail(o.place, "expected a number or the name of a variable");
+        in_.fail(o.position, "expected a number or the name of a variable");
     }
   }
 
@@ -273,7 +273,7 @@ class Parser {
 
   void statement(std::vector<Statement>& out) {
     Statement s;
-    s.place = in_.peek().place;
+    s.position = in_.peek().position;
     if (in_.accept("{")) {
       s.kind = Statement::Kind::Scope;
       s.body = statements();
@@ -289,7 +289,7 @@ class Parser {
       const std::string directive = in_.next().text;
       if (directive == "loc" || directive == "file") return skip_line_directive();
       if (directive == "pragma") return skip_to_semicolon();
-      in_.fail(s.place, fmt::format("'.{}' has no meaning here", directive));
+      in_.fail(s.position, fmt::format("'.{}' has no meaning here", directive));
     } else if (in_.is(Token::Kind::Word) && in_.peek(1).kind == Token::Kind::Mark &&
                in_.peek(1).text == ":") {
       s.label = in_.next().text;
@@ -318,7 +318,7 @@ class Parser {
       inst.guard_negated = in_.accept("!");
       inst.guard = in_.expect_word("a predicate");
     }
-    inst.place = in_.peek().place;
+    inst.position = in_.peek().position;
     inst.words.push_back(in_.expect_word("an instruction"));
     while (in_.is(Token::Kind::DotWord)) inst.words.push_back(in_.next().text);
     while (!in_.accept(";")) {

@@ -39,7 +39,7 @@ class Cursor {
   Operand operand();
 
   [[noreturn]] void fail(const std::string& expected) const;  // throws "expected X, found Y" at this place
-  [[noreturn]] void fail(Place at, const std::string& message) const;
+  [[noreturn]] void fail(TextPosition at, const std::string& message) const;
 
  private:
   uint64_t binary(int least, const std::string& what);

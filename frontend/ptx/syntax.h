@@ -38,7 +38,7 @@ struct Operand {
   uint64_t value = 0;
   int64_t offset = 0;
   std::vector<Operand> parts;
-  Place place;
+  TextPosition position;
 };
 
 struct Instruction {
@@ -46,7 +46,7 @@ struct Instruction {
   std::vector<Operand> operands;
   std::string guard;  // name of a predicate, or empty
   bool guard_negated = false;
-  Place place;
+  TextPosition position;
 };
 
 enum class VariableSpace : uint8_t { Register, Shared, Local, Const, Global, Param };
@@ -66,7 +66,7 @@ struct Declaration {
   std::vector<uint64_t> dimensions;
   bool is_extern = false, has_open_dimension = false;
   std::vector<Initializer> initial;
-  Place place;
+  TextPosition position;
 
   uint64_t count() const;  // number of elements over all dimensions
   uint64_t bytes() const { return count() * vector * type.bits / 8; }
@@ -80,7 +80,7 @@ struct Statement {
   Declaration declaration;
   std::vector<Statement> body;       // of a Scope
   std::vector<std::string> targets;  // of Targets
-  Place place;
+  TextPosition position;
 };
 
 struct Function {
@@ -89,7 +89,7 @@ struct Function {
   std::vector<Declaration> results, parameters;
   std::vector<Statement> body;
   std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
-  Place place;
+  TextPosition position;
 };
 
 struct Module {

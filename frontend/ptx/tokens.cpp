@@ -29,7 +29,7 @@ class Tokenizer {
     while (true) {
       skip_space();
       Token token;
-      token.place = place_;
+      token.position = position_;
       if (at_ == text_.size()) {
         tokens_.push_back(token);
         return std::move(tokens_);
@@ -63,10 +63,10 @@ class Tokenizer {
 
   void advance() {
     if (text_[at_++] == '\n') {
-      ++place_.line;
-      place_.column = 1;
+      ++position_.line;
+      position_.column = 1;
     } else {
-      ++place_.column;
+      ++position_.column;
     }
   }
   template <class Test>
@@ -75,7 +75,7 @@ class Tokenizer {
     while (at_ < text_.size() && test(text_[at_])) advance();
     return std::string(text_.substr(begin, at_ - begin));
   }
-  [[noreturn]] void fail(Place at, const std::string& what) const {
+  [[noreturn]] void fail(TextPosition at, const std::string& what) const {
     throw UserError({file_, at.line, at.column}, what);
   }
 
@@ -86,7 +86,7 @@ class Tokenizer {
       } else if (text_.substr(at_, 2) == "//") {
         while (at_ < text_.size() && text_[at_] != '\n') advance();
       } else if (text_.substr(at_, 2) == "/*") {
-        const Place begin = place_;
+        const TextPosition begin = position_;
         while (at_ < text_.size() && text_.substr(at_, 2) != "*/") advance();
         if (at_ == text_.size()) fail(begin, "this comment has no end");
         advance();
@@ -105,8 +105,8 @@ class Tokenizer {
       token.kind = kind == 'f' ? Token::Kind::Float32 : Token::Kind::Float64;
       token.value = digits_of(token, 2, 16);
       if (token.text.size() != 2 + digits)
-        fail(token.place, fmt::format("'{}' has {} digits, but 0{} takes {}", token.text,
-                                      token.text.size() - 2, kind, digits));
+        fail(token.position, fmt::format("'{}' has {} digits, but 0{} takes {}", token.text,
+                                         token.text.size() - 2, kind, digits));
       return;
     }
     if (text_[at_] == '0' && (kind == 'x' || kind == 'b')) {
@@ -128,7 +128,7 @@ class Tokenizer {
       char* end = nullptr;
       token.kind = Token::Kind::Float64;
       token.value = std::bit_cast<uint64_t>(std::strtod(token.text.c_str(), &end));
-      if (*end != '\0') fail(token.place, fmt::format("'{}' is not a number", token.text));
+      if (*end != '\0') fail(token.position, fmt::format("'{}' is not a number", token.text));
     } else {
       token.kind = Token::Kind::Integer;
       const bool octal = token.text.size() > 1 && token.text[0] == '0';
@@ -140,7 +140,7 @@ class Tokenizer {
     const std::string digits = token.text.substr(from, token.text.size() - from - (token.text.back() == 'U'));
     char* end = nullptr;
     const uint64_t value = std::strtoull(digits.c_str(), &end, base);
-    if (digits.empty() || *end != '\0') fail(token.place, fmt::format("'{}' is not a number", token.text));
+    if (digits.empty() || *end != '\0') fail(token.position, fmt::format("'{}' is not a number", token.text));
     return value;
   }
 
@@ -148,7 +148,7 @@ class Tokenizer {
     token.kind = Token::Kind::String;
     advance();
     token.text = take([&](char c) { return c != '"'; });
-    if (at_ == text_.size()) fail(token.place, "this string has no end");
+    if (at_ == text_.size()) fail(token.position, "this string has no end");
     advance();
   }
 
@@ -159,14 +159,14 @@ class Tokenizer {
     if (token.text.empty()) token.text = std::string(1, text_[at_]);
     if (token.text.size() == 1 &&
         std::string_view("!&()*+,-/:;<=>?@[]^{|}~%").find(text_[at_]) == std::string_view::npos)
-      fail(token.place, fmt::format("unexpected character '{}'", text_[at_]));
+      fail(token.position, fmt::format("unexpected character '{}'", text_[at_]));
     for (size_t i = 0; i < token.text.size(); ++i) advance();
   }
 
   const std::string_view text_;
   const std::string& file_;
   size_t at_ = 0;
-  Place place_{1, 1};
+  TextPosition position_{1, 1};
   std::vector<Token> tokens_;
 };
 

@@ -10,8 +10,8 @@
 
 namespace glint::frontend::ptx {
 
-// Names a place in the PTX file. Line and column count from 1.
-struct Place {
+// Names a position in the PTX file. Line and column count from 1.
+struct TextPosition {
   int line = 0, column = 0;
 };
 
@@ -28,10 +28,10 @@ struct Token {
   } kind = Kind::End;
   std::string text;
   uint64_t value = 0;
-  Place place;
+  TextPosition position;
 };
 
-// Splits `text` and drops comments and line ends. Throws UserError with the place of text that is not a
+// Splits `text` and drops comments and line ends. Throws UserError with the position of text that is not a
 // token.
 std::vector<Token> tokenize(std::string_view text, const std::string& file);
 
