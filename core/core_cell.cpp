@@ -79,13 +79,13 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   if (counts_.stats.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
   block_start_ = ready;
   const uint32_t num_warps = executor_.warps_per_block();
-  BlockPlace& home = warps_.blocks().take(num_warps);
+  BlockSlot& home = warps_.blocks().take(num_warps);
   executor_.start(home.block, block_index);
   ++counts_.stats.blocks;
   for (uint32_t w = 0; w < num_warps; ++w) launch_warp(home, w, ready, now);
 }
 
-void CoreCell::launch_warp(BlockPlace& home, uint32_t warp_in_block, Cycle ready, Cycle now) {
+void CoreCell::launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now) {
   const uint32_t slot = seat_.slot = warps_.first_free();
   exec::WarpContext& warp = warps_[slot].warp;
   executor_.start(warp, home.block, warp_in_block, seat_);

@@ -64,7 +64,7 @@ class CoreCell final : public Cell {
   // These serve launching, between windows only.
   uint32_t num_slots() const { return warps_.size(); }
   uint32_t num_resident() const { return warps_.num_resident(); }
-  // Returns whether there is room for a whole block: warp slots, shared memory, and a block's place. Model: a
+  // Returns whether there is room for a whole block: warp slots, shared memory, and a block slot. Model: a
   // warp's slot and registers are free when the warp has ended; hardware keeps them until the block has
   // ended.
   bool has_room() const;
@@ -120,7 +120,7 @@ class CoreCell final : public Cell {
   const mem::Latencies& latencies() const { return counts_.latencies; }
 
  private:
-  void launch_warp(BlockPlace& home, uint32_t warp_in_block, Cycle ready, Cycle now);
+  void launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now);
   void step(Cycle now);
   void account_until(Cycle now);
   void become_empty();

@@ -50,16 +50,16 @@ std::vector<std::string> TraceRecorder::state_names() {
   return names;
 }
 
-TraceRecorder::TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin,
+TraceRecorder::TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_slots, Cycle begin,
                              Cycle end, uint64_t room)
     : image_(image),
       begin_(begin),
       end_(end),
-      room_(room - least_room(warp_slots, rt_places)),
+      room_(room - least_room(warp_slots, rt_slots)),
       slots_(warp_slots),
-      places_(rt_places) {
+      rt_stays_(rt_slots) {
   static_assert(size_t(Stall::Issued) == kRunning);
-  GLINT_CHECK(room >= least_room(warp_slots, rt_places), "room for {} slices", room);
+  GLINT_CHECK(room >= least_room(warp_slots, rt_slots), "room for {} slices", room);
   slices_.reserve(room);
 }
 
@@ -116,18 +116,18 @@ void TraceRecorder::end_warp(Cycle now, uint32_t slot) {
   add({warp.begin, now, slot, TraceKind::Warp, warp.warp, {}});
 }
 
-void TraceRecorder::enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes,
+void TraceRecorder::enter_rt(Cycle now, uint32_t rt_slot, uint32_t slot, LaneMask lanes,
                              const rt::RayState* states) {
   const RayTotals before = totals_of(lanes, states);
-  places_[place] = {now, slot, before.nodes, before.triangle_tests};
+  rt_stays_[rt_slot] = {now, slot, before.nodes, before.triangle_tests};
 }
 
-void TraceRecorder::leave_rt(Cycle now, uint32_t place, LaneMask lanes, const rt::RayState* states) {
-  const Place& at = places_[place];
+void TraceRecorder::leave_rt(Cycle now, uint32_t rt_slot, LaneMask lanes, const rt::RayState* states) {
+  const RtStay& at = rt_stays_[rt_slot];
   const RayTotals after = totals_of(lanes, states);
   add({at.begin,
        now,
-       place,
+       rt_slot,
        TraceKind::Rays,
        num_lanes(lanes),
        {at.slot, after.nodes - at.nodes, after.triangle_tests - at.triangle_tests}});

@@ -19,20 +19,20 @@ class TraceRecorder final : public CoreObserver {
   static constexpr Cycle kShortWait = 4;
 
   // `room` is a number of slices, at least least_room(). Nothing is allocated later.
-  TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_places, Cycle begin, Cycle end,
+  TraceRecorder(const exec::Image& image, uint32_t warp_slots, uint32_t rt_slots, Cycle begin, Cycle end,
                 uint64_t room);
   // Returns the slices that all tracks may still add after the window has ended.
-  static uint64_t least_room(uint32_t warp_slots, uint32_t rt_places) {
-    return uint64_t{6} * warp_slots + 2 * rt_places;
+  static uint64_t least_room(uint32_t warp_slots, uint32_t rt_slots) {
+    return uint64_t{6} * warp_slots + 2 * rt_slots;
   }
 
   void start_warp(Cycle now, uint32_t slot, const exec::WarpContext& warp) override;
   void select(Cycle now, uint32_t slot, Cycle ready, Stall wait, Stall door, uint32_t pc) override;
   void issue(Cycle now, uint32_t slot, const exec::Issued& issued) override;
   void end_warp(Cycle now, uint32_t slot) override;
-  // Notes that a warp enters a place of the RT unit's warp buffer.
-  void enter_rt(Cycle now, uint32_t place, uint32_t slot, LaneMask lanes, const rt::RayState* states);
-  void leave_rt(Cycle now, uint32_t place, LaneMask lanes, const rt::RayState* states);
+  // Notes that a warp enters a slot of the RT unit's warp buffer.
+  void enter_rt(Cycle now, uint32_t rt_slot, uint32_t slot, LaneMask lanes, const rt::RayState* states);
+  void leave_rt(Cycle now, uint32_t rt_slot, LaneMask lanes, const rt::RayState* states);
 
   Cycle end() const { return end_; }  // earlier than asked for when the bound was reached
   // Returns the slices in order of their ends, except for those that were open at the end.
@@ -49,7 +49,7 @@ class TraceRecorder final : public CoreObserver {
     Cycle run_begin = 0;  // begin of the running state, which lasts up to `known`
     Cycle known = 0;      // what came before is in a slice, or is running
   };
-  struct Place {
+  struct RtStay {
     Cycle begin = 0;
     uint32_t slot = 0, nodes = 0, triangle_tests = 0;
   };
@@ -64,7 +64,7 @@ class TraceRecorder final : public CoreObserver {
   Cycle end_;
   const uint64_t room_;
   std::vector<Slot> slots_;
-  std::vector<Place> places_;
+  std::vector<RtStay> rt_stays_;
   std::vector<TraceSlice> slices_;
 };
 

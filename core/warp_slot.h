@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/types.h"
-#include "core/block_places.h"
+#include "core/block_slots.h"
 #include "core/instruction_fetch.h"
 #include "core/scheduler.h"
 #include "core/scoreboard.h"
@@ -22,7 +22,7 @@ struct WarpSlot {
   Sequence sequence;        // the sequence that the warp is in
   uint32_t line = InstructionFetch::kNone;  // the line of instructions that the warp is in or waits for
   bool waits_for_line = false;
-  BlockPlace* home = nullptr;      // the place of the warp's block
+  BlockSlot* home = nullptr;       // the slot of the warp's block
   Scheduler* scheduler = nullptr;  // the slot's scheduler, which never changes
   uint32_t local = 0;              // the number of the slot in its scheduler
 };

@@ -9,7 +9,7 @@
 namespace glint::core {
 namespace {
 
-uint32_t num_block_places(uint32_t slots, const Params& params, const exec::World& world) {
+uint32_t num_block_slots(uint32_t slots, const Params& params, const exec::World& world) {
   if (world.block_size[0] == 0) return slots;
   return std::min(params.blocks, slots / exec::warps_per_block(world));
 }
@@ -26,7 +26,7 @@ WarpSlots::WarpSlots(uint32_t size, const Params& params, const exec::World& wor
       prologue_(params.prologue.instructions +
                 (world.shared_bytes > 0 ? params.prologue.shared_instructions : 0)),
       slots_(size),
-      blocks_(num_block_places(size, params, world)) {
+      blocks_(num_block_slots(size, params, world)) {
   GLINT_CHECK(size > 0, "no warp fits: check() reports this");
   GLINT_CHECK(blocks_.size() > 0, "no block fits: check_block() reports this");
   schedulers_.reserve(params.schedulers);
@@ -43,7 +43,7 @@ uint32_t WarpSlots::first_free() const {
   return slot;
 }
 
-void WarpSlots::start(uint32_t slot, BlockPlace& home, Cycle ready, Cycle now) {
+void WarpSlots::start(uint32_t slot, BlockSlot& home, Cycle ready, Cycle now) {
   WarpSlot& at = slots_[slot];
   at.home = &home;
   at.scoreboard.reset();

@@ -22,8 +22,8 @@ class WarpSlots {
   const WarpSlot& operator[](uint32_t slot) const { return slots_[slot]; }
   std::vector<Scheduler>& schedulers() { return schedulers_; }
   const std::vector<Scheduler>& schedulers() const { return schedulers_; }
-  BlockPlaces& blocks() { return blocks_; }
-  const BlockPlaces& blocks() const { return blocks_; }
+  BlockSlots& blocks() { return blocks_; }
+  const BlockSlots& blocks() const { return blocks_; }
 
   uint32_t num_resident() const { return num_resident_; }
   uint64_t num_launched() const { return num_launched_; }
@@ -32,7 +32,7 @@ class WarpSlots {
 
   // Starts the warp in the slot, which the executor has started. It can issue its first instruction at
   // `ready`.
-  void start(uint32_t slot, BlockPlace& home, Cycle ready, Cycle now);
+  void start(uint32_t slot, BlockSlot& home, Cycle ready, Cycle now);
   // Looks up when the warp's next instruction is present and has its operands. It has to be called after each
   // change to the warp's front, scoreboard, sequence or place in the program.
   void refresh(uint32_t slot, Cycle now);
@@ -57,7 +57,7 @@ class WarpSlots {
   const uint32_t prologue_;    // machine instructions before a warp's first instruction
   std::vector<Scheduler> schedulers_;
   std::vector<WarpSlot> slots_;
-  BlockPlaces blocks_;
+  BlockSlots blocks_;
   uint32_t num_resident_ = 0;
   uint64_t num_launched_ = 0;
 };
