@@ -11,23 +11,19 @@
 
 namespace glint::mem {
 
-L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links,
+L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, CorePort port,
                  stats::Group* parent)
     : params_(params.l1),
       line_bytes_(params.line),
       core_(core),
       allocate_on_miss_(params.l1.allocate == "on_miss"),
       map_(map),
-      links_(std::move(links)),
-      credits_left_(links_.requests.size(), params.noc.credits),
+      port_(std::move(port)),
       stats_(parent),
       tags_(cache_shape(params_.size, params_.ways, line_bytes_), params_.replacement),
       mshr_(params_.mshr_entries, params_.mshr_merges),
       passing_(params_.mshr_entries),
-      miss_queue_(params_.miss_queue),
-      request_port_(params.noc.core_request_bytes),
-      reply_port_(params.noc.core_reply_bytes),
-      partition_reply_port_(params.noc.partition_reply_bytes) {
+      miss_queue_(params_.miss_queue) {
 }
 
 bool L1Cache::refuse(Refusal reason) {
@@ -181,8 +177,9 @@ bool L1Cache::write_back(Cycle now, const Request& request) {
 void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
   // A write-back of a fill is ready at once and may not overtake; the queue is in order, so it waits for
   // those before it.
-  miss_queue_.push({ready, map_.slice(packet.line), packet});
+  miss_queue_.push({ready, packet});
   miss_queue_.back().packet.core = core_;
+  miss_queue_.back().packet.slice = uint16_t(map_.slice(packet.line));
 }
 
 void L1Cache::evict(Cycle now, const TagArray::Line& victim) {
@@ -212,27 +209,17 @@ std::optional<Token> L1Cache::pop(Cycle now, Client client) {
 }
 
 Cycle L1Cache::next_departure() const {
-  if (miss_queue_.empty() || !has_credit(miss_queue_.front().slice)) return kNever;
-  return std::max({miss_queue_.front().ready, request_port_.free_at(), last_credit_});
+  if (miss_queue_.empty()) return kNever;
+  return port_.departure(miss_queue_.front().ready, miss_queue_.front().packet.slice);
 }
 
 Cycle L1Cache::next_fill() const {
-  if (fill_blocked_ || links_.replies->arrival() == kNever) return kNever;
-  const uint32_t bytes = bytes_of(links_.replies->front());
-  return std::max(
-      reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes),
-      fill_not_before_);
-}
-
-void L1Cache::take_credits(Cycle now) {
-  for (; next_credit() <= now; links_.credits->pop()) {
-    last_credit_ = next_credit();
-    ++credits_left_[links_.credits->front().slice];
-  }
+  if (fill_blocked_ || port_.arrival() == kNever) return kNever;
+  return std::max(port_.received(), fill_not_before_);
 }
 
 void L1Cache::tick(Cycle now) {
-  take_credits(now);
+  port_.take_credits(now);
   for (;;) {
     const Cycle departure = next_departure(), arrival = next_fill();
     if (std::min(departure, arrival) > now) return;
@@ -249,11 +236,8 @@ void L1Cache::send_front(Cycle now) {
   Outgoing& out = miss_queue_.front();
   out.packet.stamps.set(Stage::L1Queue, now);
   stats_.request_wait += now - out.ready;
-  const uint32_t bytes = bytes_of(out.packet);
-  const Cycle tail = request_port_.leave(now, bytes);
-  links_.requests[out.slice]->send(core_, tail + links_.request_latency[out.slice], out.packet);
-  if (links_.credits) --credits_left_[out.slice];
-  stats_.request_bytes += bytes;
+  port_.send(now, out.packet);
+  stats_.request_bytes += bytes_of(out.packet);
   ++packets_sent_;
   miss_queue_.pop();
   if (fill_blocked_) fill_blocked_ = false, fill_not_before_ = now;
@@ -262,17 +246,14 @@ void L1Cache::send_front(Cycle now) {
 // Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the
 // miss queue.
 bool L1Cache::fill(Cycle now) {
-  const Reply reply = links_.replies->front();
+  const Reply reply = port_.front();
   const bool is_kept = !reply.is_atomic && !passing_[mshr_.find(reply.line)];
   if (is_kept && !place(now, reply)) return false;
-  const uint32_t bytes = bytes_of(reply);
   ++stats_.fills;
-  stats_.reply_bytes += bytes;
-  stats_.reply_wait += now - links_.replies->arrival();
+  stats_.reply_bytes += bytes_of(reply);
+  stats_.reply_wait += now - port_.arrival();
   sectors_received_ += num_sectors(reply.sectors);
-  reply_port_.occupy_until(
-      reply_port_.received_at(links_.replies->arrival(), partition_reply_port_.cycles(bytes), bytes));
-  links_.replies->pop();
+  port_.take(now);
   fill_not_before_ = now + 1;
   if (is_kept) filled_cycle_ = now, filled_bank_ = bank_of(reply.line);
   if (reply.is_atomic) {
@@ -320,7 +301,7 @@ void L1Cache::count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps) 
 }
 
 Cycle L1Cache::next_event(Cycle now) const {
-  Cycle next = std::min({next_departure(), next_fill(), next_credit()});
+  Cycle next = std::min({next_departure(), next_fill(), port_.next_credit()});
   for (const Answers& a : answers_) {
     if (!a.hits.empty()) next = std::min(next, a.hits.front().ready);
     if (!a.fills.empty()) next = std::min(next, a.fills.front().ready);
@@ -338,7 +319,7 @@ std::string L1Cache::describe() const {
     const Packet& first = miss_queue_.front().packet;
     out += fmt::format("  L1: {} packets wait to leave, the first {} line {:#x} for partition {}\n",
                        miss_queue_.size(), first.write ? "writes" : "reads", first.line,
-                       map_.partition_of(miss_queue_.front().slice));
+                       map_.partition_of(first.slice));
   }
   return out;
 }

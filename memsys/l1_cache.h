@@ -11,10 +11,10 @@
 #include "base/stats.h"
 #include "memsys/address_map.h"
 #include "memsys/cache_stats.h"
-#include "memsys/fan_in.h"
 #include "memsys/l1_port.h"
 #include "memsys/latency.h"
 #include "memsys/mshr.h"
+#include "memsys/network_port.h"
 #include "memsys/packet.h"
 #include "memsys/params.h"
 #include "memsys/ring.h"
@@ -55,25 +55,18 @@ struct ReadMissed {
   const Request& request;
 };
 
-// The network as one L1 sees it. All outlive the cache.
-struct L1Links {
-  std::vector<FanIn<Packet>*> requests{};  // inbound sides, by slice
-  std::vector<Cycle> request_latency{};    // by slice
-  FanIn<Reply>* replies = nullptr;         // this core's own
-  FanIn<Credit>* credits = nullptr;        // this core's own; null: packets need none
-};
-
-// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's request
-// port, when its slice has a place for it. Lines are allocated when data arrives (streaming), so that only
-// MSHRs and the miss queue limit the misses in flight; or (`allocate`) when the miss is accepted, and held
-// until then. Lines of instructions and constants pass through MSHRs and miss queue for caches of the core
-// that keep them. Atomics go past the cache to the L2, which executes them; what the cache holds of their
-// sectors is dropped. Model: a write covers whole sectors; a write to a line on its way does not disturb it.
-// Model: a read that waits for a sector already on its way is ready when the sector is, even within the hit
-// latency. Model: local memory that is dirty at the end of a run is not written back: its thread is gone.
+// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's port of
+// the network, when the network has room for it. Lines are allocated when data arrives (streaming), so that
+// only MSHRs and the miss queue limit the misses in flight; or (`allocate`) when the miss is accepted, and
+// held until then. Lines of instructions and constants pass through MSHRs and miss queue for caches of the
+// core that keep them. Atomics go past the cache to the L2, which executes them; what the cache holds of
+// their sectors is dropped. Model: a write covers whole sectors; a write to a line on its way does not
+// disturb it. Model: a read that waits for a sector already on its way is ready when the sector is, even
+// within the hit latency. Model: local memory that is dirty at the end of a run is not written back: its
+// thread is gone.
 class L1Cache final : public L1Port {
  public:
-  L1Cache(const Params& params, uint16_t core, const PartitionMap& map, L1Links links, stats::Group* parent);
+  L1Cache(const Params& params, uint16_t core, const PartitionMap& map, CorePort port, stats::Group* parent);
 
   bool access(Cycle now, Client client, const Request& request) override;
   std::optional<Token> pop(Cycle now, Client client) override;
@@ -111,7 +104,6 @@ class L1Cache final : public L1Port {
   };
   struct Outgoing {
     Cycle ready = 0;
-    uint32_t slice = 0;
     Packet packet;
   };
   struct Answers {  // of one client; each ring is in order of readiness
@@ -125,9 +117,6 @@ class L1Cache final : public L1Port {
   uint64_t bank_of(Address line) const {
     return uint64_t{1} << (params_.banks == 1 ? 0 : line / line_bytes_ % params_.banks);
   }
-  bool has_credit(uint32_t slice) const { return !links_.credits || credits_left_[slice] > 0; }
-  Cycle next_credit() const { return links_.credits ? links_.credits->arrival() : kNever; }
-  void take_credits(Cycle now);
   bool pass_atomic(Cycle now, Client client, const Request& request);
   bool queue_room(uint32_t packets) const { return miss_queue_.size() + packets <= params_.miss_queue; }
   bool queue_full() const { return !queue_room(1); }
@@ -147,8 +136,7 @@ class L1Cache final : public L1Port {
   const uint16_t core_;
   const bool allocate_on_miss_;
   const PartitionMap map_;
-  const L1Links links_;
-  std::vector<uint32_t> credits_left_;  // by slice
+  CorePort port_;
   L1Stats stats_;
   Probe<ReadMissed> read_missed_;
   Latencies latencies_;
@@ -158,8 +146,6 @@ class L1Cache final : public L1Port {
   LineTable seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;
-  Port request_port_, reply_port_;
-  Port partition_reply_port_;  // only to know how long a reply took to be sent
   Cycle port_cycle_ = kNever;  // accesses_ and busy_banks_ are of this cycle
   uint32_t accesses_ = 0;
   uint64_t busy_banks_ = 0;
@@ -167,7 +153,6 @@ class L1Cache final : public L1Port {
   uint64_t filled_bank_ = 0;
   Cycle fill_not_before_ = 0;  // one fill a cycle
   bool fill_blocked_ = false;  // a dirty victim found the miss queue full: until a packet leaves
-  Cycle last_credit_ = 0;
   uint64_t order_ = 0;
   uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0,
            tokens_returned_ = 0;

@@ -17,7 +17,7 @@ Cycle parts_of(double cycles, Cycle parts) {
 
 }  // namespace
 
-L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links,
+L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SlicePort port,
                  stats::Group* parent, const std::string& name)
     : params_(params.l2),
       visit_parts_(parts_of(params.l2.write_visit, kParts)),
@@ -28,20 +28,17 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
       index_(index),
       dram_latency_(params.dram.latency),
       map_(map),
-      links_(std::move(links)),
+      port_(std::move(port)),
       stats_(parent, name),
       tags_(cache_shape(params_.slice_size, params_.ways, line_bytes_), params_.replacement),
       words_(params_.write_masks ? params_.slice_size / line_bytes_ : 0),
       mshr_(params_.mshr_entries, params_.mshr_merges),
-      request_port_(params.noc.partition_request_bytes),
-      reply_port_(params.noc.partition_reply_bytes),
-      core_request_port_(params.noc.core_request_bytes),
       to_dram_(params_.dram_queue) {
 }
 
 void L2Slice::send_ready_replies(Cycle now) {
   while (!hit_replies_.empty() && hit_replies_.front().ready <= now) {
-    send_reply(now, hit_replies_.front().core, hit_replies_.front().reply);
+    send_reply(now, hit_replies_.front().reply);
     hit_replies_.pop();
   }
 }
@@ -54,17 +51,23 @@ Cycle L2Slice::next_work() const {
 }
 
 Cycle L2Slice::head_received() const {
-  if (links_.requests->arrival() == kNever) return kNever;
-  const uint32_t bytes = bytes_of(links_.requests->front());
-  return std::max(
-      request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes),
-      busy_until_);
+  return port_.arrival() == kNever ? kNever : std::max(port_.received(), busy_until_);
 }
 
 // The answer to a packet, or to some of its sectors.
 Reply L2Slice::reply_to(const Packet& packet, uint8_t sectors) const {
-  if (!is_atomic(packet)) return {packet.line, sectors, false, 0, Client::Lsu, 0, packet.stamps};
-  return {packet.line, packet.sectors, true, packet.token, packet.client, packet.order, packet.stamps};
+  Reply reply{.line = packet.line,
+              .slice = packet.slice,
+              .core = packet.core,
+              .sectors = sectors,
+              .stamps = packet.stamps};
+  if (!is_atomic(packet)) return reply;
+  reply.sectors = packet.sectors;
+  reply.is_atomic = true;
+  reply.token = packet.token;
+  reply.client = packet.client;
+  reply.order = packet.order;
+  return reply;
 }
 
 void L2Slice::fill(Cycle now, const DramReturn& data) {
@@ -87,10 +90,10 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
     const uint8_t served = uint8_t(waiter.missing & sectors);
     waiter.missing &= uint8_t(~sectors);
     if (!is_atomic(packet)) {
-      if (served) send_reply(now, packet.core, reply_to(packet, served));
+      if (served) send_reply(now, reply_to(packet, served));
     } else if (waiter.missing == 0) {
       filled.dirty |= packet.sectors & filled.valid;
-      if (!packet.write) send_reply(now, packet.core, reply_to(packet, packet.sectors));
+      if (!packet.write) send_reply(now, reply_to(packet, packet.sectors));
     }
     return waiter.missing == 0;
   });
@@ -99,25 +102,18 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
 void L2Slice::serve(Cycle now) {
   blocked_ = SliceCycle::Count;
   if (head_received() > now) return;
-  Packet packet = links_.requests->front();
-  packet.stamps.set(Stage::Request, links_.requests->arrival());
+  Packet packet = port_.front();
+  packet.stamps.set(Stage::Request, port_.arrival());
   packet.stamps.set(Stage::L2Queue, now);
   packet.stamps.set(Stage::L2Service, now + params_.latency);
   packet.stamps.set(Stage::DramWay, now + params_.latency + dram_latency_);
   if (!(packet.write && !is_atomic(packet) ? write(now, packet) : read(now, packet))) return;
-  const uint32_t bytes = bytes_of(packet);
-  request_port_.occupy_until(
-      request_port_.received_at(links_.requests->arrival(), core_request_port_.cycles(bytes), bytes));
-  stats_.request_bytes += bytes;
-  stats_.request_wait += now - links_.requests->arrival();
+  stats_.request_bytes += bytes_of(packet);
+  stats_.request_wait += now - port_.arrival();
   ++packets_received_;
-  // Not sooner than any message: a window may be as long as the shortest of them.
-  if (!links_.credits.empty())
-    links_.credits[packet.core]->send(index_, now + 1 + links_.reply_latency[packet.core],
-                                      {uint16_t(index_)});
+  port_.take(now);
   occupy(now, packet);
   if (packet.write) written_until_ = busy_until_;
-  links_.requests->pop();
 }
 
 Cycle L2Slice::service_parts(const Packet& packet) const {
@@ -175,14 +171,14 @@ void L2Slice::answer_present(Cycle now, const Packet& packet, uint8_t missing) {
   const Cycle ready = now + (service_parts(packet) + kParts - 1) / kParts - 1 + params_.latency;
   if (!is_atomic(packet)) {
     if (const uint8_t present = uint8_t(packet.sectors & ~missing)) {
-      hit_replies_.push({ready, reply_to(packet, present), packet.core});
+      hit_replies_.push({ready, reply_to(packet, present)});
       hit_replies_.back().reply.stamps.set_rest(Stage::L2Service, ready);
     }
     return;
   }
   if (missing) return;
   tags_.line(tags_.find(packet.line)).dirty |= packet.sectors;
-  if (!packet.write) hit_replies_.push({ready, reply_to(packet, packet.sectors), packet.core});
+  if (!packet.write) hit_replies_.push({ready, reply_to(packet, packet.sectors)});
 }
 
 bool L2Slice::write(Cycle now, const Packet& packet) {
@@ -249,12 +245,9 @@ void L2Slice::evict(Cycle now, const TagArray::Line& victim) {
   queue_for_dram(now + dram_latency_, victim.address, victim.dirty, true);
 }
 
-void L2Slice::send_reply(Cycle now, uint16_t core, const Reply& reply) {
-  stats_.reply_wait += std::max(now, reply_port_.free_at()) - now;
-  const uint32_t bytes = bytes_of(reply);
-  const Cycle tail = reply_port_.leave(now, bytes);
-  links_.replies[core]->send(index_, tail + links_.reply_latency[core], reply);
-  stats_.reply_bytes += bytes;
+void L2Slice::send_reply(Cycle now, const Reply& reply) {
+  stats_.reply_wait += port_.send(now, reply) - now;
+  stats_.reply_bytes += bytes_of(reply);
   sectors_replied_ += num_sectors(reply.sectors);
   ++replies_sent_;
 }
@@ -277,13 +270,12 @@ void L2Slice::account(Cycle until, bool dram_works) {
 }
 
 bool L2Slice::finished() const {
-  return links_.requests->waiting() == 0 && hit_replies_.empty() && to_dram_.empty() && mshr_.in_use() == 0;
+  return port_.waiting() == 0 && hit_replies_.empty() && to_dram_.empty() && mshr_.in_use() == 0;
 }
 
 std::string L2Slice::describe(bool dram_works) const {
-  return fmt::format("{} packets waiting, {} lines on the way, {} for DRAM, head: {}",
-                     links_.requests->waiting(), mshr_.in_use(), to_dram_.size(),
-                     name_of(reason(dram_works)));
+  return fmt::format("{} packets waiting, {} lines on the way, {} for DRAM, head: {}", port_.waiting(),
+                     mshr_.in_use(), to_dram_.size(), name_of(reason(dram_works)));
 }
 
 }  // namespace glint::mem

@@ -1,4 +1,4 @@
-// A slice of the L2: a cache with ports into the network, in front of its partition's DRAM channel.
+// A slice of the L2: a cache with a port of the network, in front of its partition's DRAM channel.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,8 +10,8 @@
 #include "memsys/address_map.h"
 #include "memsys/cache_stats.h"
 #include "memsys/dram_model.h"
-#include "memsys/fan_in.h"
 #include "memsys/mshr.h"
+#include "memsys/network_port.h"
 #include "memsys/packet.h"
 #include "memsys/params.h"
 #include "memsys/ring.h"
@@ -45,14 +45,6 @@ struct L2Stats : CacheStats {
                                    "Sectors written in part that came from DRAM for the rest."};
 };
 
-// The network as one slice sees it. All outlive the slice.
-struct SliceLinks {
-  FanIn<Packet>* requests = nullptr;      // its inbound side
-  std::vector<FanIn<Reply>*> replies{};   // by core
-  std::vector<FanIn<Credit>*> credits{};  // by core; empty: packets need none
-  std::vector<Cycle> reply_latency{};     // by core
-};
-
 // A request on its way from a slice to the DRAM scheduler.
 struct ToDram {
   Cycle ready = 0;
@@ -70,8 +62,8 @@ struct ToDram {
 // read-modify-write). Model: dirty sectors left at the end of a run are not written back.
 class L2Slice {
  public:
-  L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SliceLinks links,
-          stats::Group* parent, const std::string& name);
+  L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SlicePort port, stats::Group* parent,
+          const std::string& name);
 
   // The stages of a cycle, back to front: the partition calls them.
   void fill(Cycle now, const DramReturn& data);
@@ -102,7 +94,6 @@ class L2Slice {
   struct HitReply {
     Cycle ready = 0;
     Reply reply;
-    uint16_t core = 0;
   };
 
   bool read(Cycle now, const Packet& packet);
@@ -118,7 +109,7 @@ class L2Slice {
   }
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   void evict(Cycle now, const TagArray::Line& victim);
-  void send_reply(Cycle now, uint16_t core, const Reply& reply);
+  void send_reply(Cycle now, const Reply& reply);
   Cycle head_received() const;
   uint8_t whole_atoms(uint8_t sectors) const;
   bool dram_room(uint32_t requests) const { return to_dram_.size() + requests <= params_.dram_queue; }
@@ -132,13 +123,12 @@ class L2Slice {
   const uint32_t index_;
   const Cycle dram_latency_;
   const PartitionMap map_;
-  const SliceLinks links_;
+  SlicePort port_;
   L2Stats stats_;
   TagArray tags_;
   std::vector<WordMask> words_;  // by slot: what is written of its sectors that are dirty and not valid
   Mshr<Waiter> mshr_;
   LineTable seen_;
-  Port request_port_, reply_port_, core_request_port_;
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
   Cycle busy_until_ = 0;

@@ -8,65 +8,32 @@
 #include <utility>
 
 #include "base/check.h"
+#include "memsys/network_port.h"
 
 namespace glint::mem {
-
-namespace {
-
-// Between a core and a slice, one way, beyond the latency of the network: they may lie on different sides.
-Cycle far_latency(const Params& params, uint32_t num_cores, uint32_t core, uint32_t slice) {
-  const uint64_t sides = params.noc.sides;
-  return core * sides / num_cores == slice * sides / params.num_slices() ? 0 : params.noc.far_latency;
-}
-
-}  // namespace
 
 MemorySystem::MemorySystem(const Params& params, uint32_t num_cores, double core_mhz, stats::Group* parent)
     : group_(parent, "memory"),
       map_(params.dram.channels, params.l2.slices, params.interleave, params.hash == "mixed"),
-      // A port needs at least one cycle for any packet, on top of the way.
-      shortest_latency_(1 + std::min(params.noc.request_latency, params.noc.reply_latency)) {
-  SliceLinks from_slice;
-  std::vector<FanIn<Packet>*> requests;
-  for (uint32_t s = 0; s < params.num_slices(); ++s)
-    requests.push_back(requests_.emplace_back(std::make_unique<FanIn<Packet>>(num_cores)).get());
+      network_(params.noc.topology.make({params.noc, num_cores, params.num_slices()})) {
   for (uint32_t c = 0; c < num_cores; ++c) {
-    from_slice.replies.push_back(
-        replies_.emplace_back(std::make_unique<FanIn<Reply>>(params.num_slices())).get());
-    if (params.noc.credits > 0)
-      from_slice.credits.push_back(
-          credits_.emplace_back(std::make_unique<FanIn<Credit>>(params.num_slices())).get());
     core_groups_.push_back(std::make_unique<stats::Group>(&group_, fmt::format("core[{}]", c)));
-    L1Links links{requests, {}, replies_[c].get(), credits_.empty() ? nullptr : credits_[c].get()};
-    for (uint32_t s = 0; s < params.num_slices(); ++s)
-      links.request_latency.push_back(params.noc.request_latency + far_latency(params, num_cores, c, s));
-    l1s_.push_back(
-        std::make_unique<L1Cache>(params, uint16_t(c), map_, std::move(links), core_groups_[c].get()));
+    l1s_.push_back(std::make_unique<L1Cache>(params, uint16_t(c), map_, network_->core_port(uint16_t(c)),
+                                             core_groups_[c].get()));
     load_latency_.add(l1s_.back()->latencies());
   }
   for (uint32_t p = 0; p < params.dram.channels; ++p) {
-    std::vector<SliceLinks> links;
-    for (uint32_t s = p * params.l2.slices; s < (p + 1) * params.l2.slices; ++s) {
-      links.push_back(from_slice);
-      links.back().requests = requests[s];
-      for (uint32_t c = 0; c < num_cores; ++c)
-        links.back().reply_latency.push_back(params.noc.reply_latency + far_latency(params, num_cores, c, s));
-    }
-    partitions_.push_back(std::make_unique<Partition>(params, p, map_, core_mhz, std::move(links), &group_));
+    std::vector<SlicePort> ports;
+    for (uint32_t s = p * params.l2.slices; s < (p + 1) * params.l2.slices; ++s)
+      ports.push_back(network_->slice_port(uint16_t(s)));
+    partitions_.push_back(std::make_unique<Partition>(params, p, map_, core_mhz, std::move(ports), &group_));
   }
 }
 
 std::vector<Cell*> MemorySystem::cells() {
   std::vector<Cell*> out;
   for (const auto& partition : partitions_) out.push_back(partition.get());
-  return out;
-}
-
-std::vector<ChannelBase*> MemorySystem::channels() {
-  std::vector<ChannelBase*> out;
-  for (const auto& channel : requests_) out.push_back(channel.get());
-  for (const auto& channel : replies_) out.push_back(channel.get());
-  for (const auto& channel : credits_) out.push_back(channel.get());
+  for (Cell* cell : network_->cells()) out.push_back(cell);
   return out;
 }
 
@@ -102,8 +69,9 @@ void MemorySystem::check_drained() const {
   }
   GLINT_CHECK_EQ(sent, received);
   GLINT_CHECK_EQ(requested, replied);
-  for (const auto& channel : replies_) GLINT_CHECK_EQ(channel->waiting(), size_t{0});
-  for (const auto& channel : credits_) GLINT_CHECK_EQ(channel->waiting(), size_t{0});
+  for (const Cell* cell : network_->cells()) GLINT_CHECK(cell->finished(), "{}", cell->describe_stall());
+  for (const ChannelBase* channel : network_->channels())
+    GLINT_CHECK(channel->next_arrival() == kNever, "the network still holds messages");
   check_conserved();
 }
 

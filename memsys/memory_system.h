@@ -8,9 +8,9 @@
 #include "base/stats.h"
 #include "engine/engine.h"
 #include "memsys/address_map.h"
-#include "memsys/fan_in.h"
 #include "memsys/l1_cache.h"
 #include "memsys/latency.h"
+#include "memsys/network.h"
 #include "memsys/params.h"
 #include "memsys/partition.h"
 
@@ -31,10 +31,10 @@ class MemorySystem {
   uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
   const PartitionMap& map() const { return map_; }
 
-  std::vector<Cell*> cells();            // one a partition
-  std::vector<ChannelBase*> channels();  // one a slice, then one a core, then the credits of each core
+  std::vector<Cell*> cells();  // the partitions, then the routers of the network
+  std::vector<ChannelBase*> channels() { return network_->channels(); }
   // The engine's window may be this long: no message arrives sooner after it was sent. At least 1.
-  Cycle shortest_latency() const { return shortest_latency_; }
+  Cycle shortest_latency() const { return network_->shortest_latency(); }
 
   void finish(
       Cycle end);  // attributes the cycles up to the end of the run: call once, before reading statistics
@@ -52,10 +52,7 @@ class MemorySystem {
       &group_, "load_latency",
       "Reads answered by the L1s, atomics included, from their acceptance on, by traffic class."};
   PartitionMap map_;
-  Cycle shortest_latency_;
-  std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by slice
-  std::vector<std::unique_ptr<FanIn<Reply>>> replies_;    // by core
-  std::vector<std::unique_ptr<FanIn<Credit>>> credits_;   // by core; none when they are unlimited
+  std::unique_ptr<Network> network_;
   std::vector<std::unique_ptr<stats::Group>> core_groups_;
   std::vector<std::unique_ptr<L1Cache>> l1s_;
   std::vector<std::unique_ptr<Partition>> partitions_;

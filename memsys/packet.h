@@ -1,4 +1,4 @@
-// What crosses the network between L1 caches and memory partitions, and the time a port needs for it.
+// The messages that cross the network between L1 caches and L2 slices, and their sizes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -12,10 +12,11 @@
 
 namespace glint::mem {
 
-// From an L1 to a partition: wants, or writes, sectors of a line.
+// From an L1 to a slice of the L2: wants, or writes, sectors of a line.
 struct Packet {
   Address line = 0;
-  uint16_t core = 0;
+  uint16_t core = 0;   // the source
+  uint16_t slice = 0;  // the destination
   uint8_t sectors = 0;
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
@@ -27,15 +28,17 @@ struct Packet {
   Stamps stamps{};
 };
 
-// A slice has served a packet: its core may send another. Travels beside the replies.
+// Allows the sender of a message to send another one (network_port.h). A credit travels beside the messages.
 struct Credit {
-  uint16_t slice = 0;
+  uint16_t allowance = 0;  // which of the sender's counts grows
 };
 
-// From a partition to an L1: sectors of a line. A packet may be answered by several replies, sector by
+// From a slice of the L2 to an L1: sectors of a line. A packet may be answered by several replies, sector by
 // sector.
 struct Reply {
   Address line = 0;
+  uint16_t slice = 0;  // the source
+  uint16_t core = 0;   // the destination
   uint8_t sectors = 0;
   bool is_atomic = false;  // the old values for one access: nothing that a cache keeps
   Token token = 0;
@@ -65,29 +68,17 @@ constexpr uint32_t bytes_of(const Reply& r) {
   return kHeaderBytes + num_sectors(r.sectors) * kSectorBytes;
 }
 
-// One side of a crossbar port. A packet occupies it for a whole number of cycles.
-// Model: the switch inside never blocks; ports and, towards the slices, credits limit.
-class Port {
- public:
-  explicit Port(uint32_t bytes_per_cycle) : bytes_per_cycle_(bytes_per_cycle) {}
-
-  Cycle cycles(uint32_t bytes) const { return (bytes + bytes_per_cycle_ - 1) / bytes_per_cycle_; }
-  Cycle free_at() const { return free_at_; }
-
-  // Sending: the packet starts at max(ready, free) and its tail has left at the cycle returned.
-  Cycle leave(Cycle ready, uint32_t bytes) { return free_at_ = std::max(ready, free_at_) + cycles(bytes); }
-
-  // Receiving a packet whose tail arrives at `tail` after `sent_cycles` on the sending port: when the port
-  // has all of it. Unloaded and equally wide, receiving overlaps sending and costs nothing more.
-  Cycle received_at(Cycle tail, Cycle sent_cycles, uint32_t bytes) const {
-    const Cycle head = tail - sent_cycles;
-    return std::max(tail, std::max(head, free_at_) + cycles(bytes));
-  }
-  void occupy_until(Cycle cycle) { free_at_ = cycle; }
-
- private:
-  uint32_t bytes_per_cycle_;
-  Cycle free_at_ = 0;
-};
+constexpr uint16_t source_of(const Packet& p) {
+  return p.core;
+}
+constexpr uint16_t source_of(const Reply& r) {
+  return r.slice;
+}
+constexpr uint16_t destination_of(const Packet& p) {
+  return p.slice;
+}
+constexpr uint16_t destination_of(const Reply& r) {
+  return r.core;
+}
 
 }  // namespace glint::mem

@@ -10,6 +10,7 @@
 #include "base/params.h"
 #include "base/registry.h"
 #include "memsys/dram_params.h"
+#include "memsys/network.h"
 #include "memsys/replacement.h"
 
 namespace glint::mem {
@@ -74,7 +75,8 @@ struct L1Params {
 };
 
 struct NocParams {
-  uint32_t core_request_bytes = 40;  // one flit a cycle: Vulkan-Sim icnt_flit_size
+  PolicyChoice<Network> topology{"crossbar"};  // Choice: unpublished
+  uint32_t core_request_bytes = 40;            // one flit a cycle: Vulkan-Sim icnt_flit_size
   uint32_t core_reply_bytes = 40;
   uint32_t partition_request_bytes = 40;
   uint32_t partition_reply_bytes = 40;
@@ -86,6 +88,7 @@ struct NocParams {
 
   static constexpr auto params() {
     return std::tuple{
+        policy(&NocParams::topology, "topology", "How cores and slices are connected."),
         param(&NocParams::core_request_bytes, "core_request_bytes", "byte/cycle",
               "Width of a core's port towards L2.", 0, 4096),
         param(&NocParams::core_reply_bytes, "core_reply_bytes", "byte/cycle",

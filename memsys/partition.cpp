@@ -11,15 +11,15 @@
 namespace glint::mem {
 
 Partition::Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz,
-                     std::vector<SliceLinks> links, stats::Group* parent)
+                     std::vector<SlicePort> ports, stats::Group* parent)
     : group_(parent, fmt::format("partition[{}]", index)),
       index_(index),
       map_(map),
       dram_(params.dram.model.make({params.dram, params.interleave, core_mhz, &group_})) {
-  for (uint32_t i = 0; i < links.size(); ++i) {
-    const std::string name = links.size() == 1 ? "l2" : fmt::format("l2[{}]", i);
-    slices_.push_back(std::make_unique<L2Slice>(params, index * uint32_t(links.size()) + i, map,
-                                                std::move(links[i]), &group_, name));
+  for (uint32_t i = 0; i < ports.size(); ++i) {
+    const std::string name = ports.size() == 1 ? "l2" : fmt::format("l2[{}]", i);
+    slices_.push_back(std::make_unique<L2Slice>(params, index * uint32_t(ports.size()) + i, map,
+                                                std::move(ports[i]), &group_, name));
   }
 }
 

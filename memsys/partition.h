@@ -26,9 +26,9 @@ struct DramTurn {
 // Slices hand requests to DRAM in turn, each in order. Every cycle of each slice has one reason.
 class Partition final : public Cell {
  public:
-  // `links`: one a slice of this partition.
+  // `ports`: one for each slice of this partition.
   Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz,
-            std::vector<SliceLinks> links, stats::Group* parent);
+            std::vector<SlicePort> ports, stats::Group* parent);
 
   void advance(Cycle from, Cycle until) override;
   Cycle next_event(Cycle from) const override;

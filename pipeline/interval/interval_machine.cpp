@@ -31,6 +31,7 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
       {rt.scheduler.name != "oldest_first", "rt.scheduler other than \"oldest_first\""},
       {rt.coalescing.name != "within_warp", "rt.coalescing other than \"within_warp\""},
       {rt.stack.name != "full", "stacks that leave the RT unit (rt.stack other than \"full\")"},
+      {params.memory.noc.topology.name != "crossbar", "memory.noc.topology other than \"crossbar\""},
       {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
            rt.shortcuts.store_each_hit,
        "rt.result_store and the accesses of rt.shortcuts"},

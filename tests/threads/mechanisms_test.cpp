@@ -122,3 +122,14 @@ TEST_CASE("with every replacement policy, stepping, skipping and two threads giv
     check_equal(frames(gpu)[0]);
   }
 }
+
+TEST_CASE("with every network, stepping, skipping and two threads give the same cycles and statistics") {
+  for (const std::string& name : Registry<mem::Network>::names()) {
+    CAPTURE(name);
+    GpuParams gpu = test::preset("mobile");
+    gpu.cores = 3;
+    gpu.core.launch_latency = 100;
+    gpu.memory.noc.topology = PolicyChoice<mem::Network>(name.c_str());
+    for (const pipeline::RenderJob& job : frames(gpu)) check_equal(job);
+  }
+}

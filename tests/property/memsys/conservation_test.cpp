@@ -46,6 +46,7 @@ Params cramped(uint32_t variant) {
                                                                     : "frfcfs");
   p.dram.refresh = variant % 3 == 0 ? "none" : variant % 3 == 1 ? "all_bank" : "per_bank";
   p.dram.activate_clocks = 1 + variant % 2;
+  if (variant % 5 == 3) p.noc.topology = PolicyChoice<Network>("mesh");
   if (variant == 11) p.dram.model = PolicyChoice<DramModel>("simple");
   return p;
 }
