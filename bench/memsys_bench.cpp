@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "memsys/dram_channel.h"
+#include "memsys/dram/dram_channel.h"
 #include "memsys/memory_system.h"
 #include "tests/support/memory_rig.h"
 

@@ -8,9 +8,9 @@
 
 #include "core/code_params.h"
 #include "core/code_stats.h"
+#include "memsys/cache/tag_array.h"
 #include "memsys/l1_port.h"
 #include "memsys/ring.h"
-#include "memsys/tag_array.h"
 
 namespace glint::core {
 

@@ -7,8 +7,8 @@
 #include "base/policy_kinds.h"
 #include "base/stats.h"
 #include "base/types.h"
-#include "memsys/clock_domains.h"
-#include "memsys/dram_stats.h"
+#include "memsys/dram/clock_domains.h"
+#include "memsys/dram/dram_stats.h"
 #include "memsys/ring.h"
 
 namespace glint::mem {

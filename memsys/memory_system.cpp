@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/check.h"
-#include "memsys/network_port.h"
+#include "memsys/messages/network_port.h"
 
 namespace glint::mem {
 

@@ -8,7 +8,7 @@
 #include "base/stats.h"
 #include "engine/engine.h"
 #include "memsys/address_map.h"
-#include "memsys/l1_cache.h"
+#include "memsys/cache/l1_cache.h"
 #include "memsys/latency.h"
 #include "memsys/network.h"
 #include "memsys/params.h"

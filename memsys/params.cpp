@@ -6,7 +6,7 @@
 #include <bit>
 #include <fmt/format.h>
 
-#include "memsys/packet.h"
+#include "memsys/messages/packet.h"
 
 namespace glint::mem {
 namespace {

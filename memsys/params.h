@@ -9,7 +9,7 @@
 #include "base/diagnostics.h"
 #include "base/params.h"
 #include "base/registry.h"
-#include "memsys/dram_params.h"
+#include "memsys/dram/dram_params.h"
 #include "memsys/network.h"
 #include "memsys/replacement.h"
 

@@ -10,8 +10,8 @@
 #include "base/probe.h"
 #include "base/stats.h"
 #include "engine/engine.h"
+#include "memsys/cache/l2_slice.h"
 #include "memsys/dram_model.h"
-#include "memsys/l2_slice.h"
 #include "memsys/params.h"
 
 namespace glint::mem {

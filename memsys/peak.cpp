@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "memsys/packet.h"
+#include "memsys/messages/packet.h"
 
 namespace glint::mem {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "memsys/dram/dram_timing.h"
 #include "memsys/dram_model.h"
-#include "memsys/dram_timing.h"
 
 namespace glint::mem {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/registry.h"
-#include "memsys/network_port.h"
+#include "memsys/messages/network_port.h"
 #include "memsys/params.h"
 
 namespace glint::mem {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/registry.h"
-#include "memsys/network_port.h"
+#include "memsys/messages/network_port.h"
 #include "memsys/params.h"
 #include "memsys/ring.h"
 

@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "memsys/packet.h"
+#include "memsys/messages/packet.h"
 
 namespace glint::pipeline {
 namespace {

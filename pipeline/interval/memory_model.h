@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "memsys/address_map.h"
-#include "memsys/dram_timing.h"
+#include "memsys/cache/tag_array.h"
+#include "memsys/dram/dram_timing.h"
 #include "memsys/params.h"
-#include "memsys/tag_array.h"
 #include "pipeline/interval/bandwidth.h"
 
 namespace glint::pipeline {

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "memsys/dram_channel.h"
+#include "memsys/dram/dram_channel.h"
 
 namespace glint::mem {
 

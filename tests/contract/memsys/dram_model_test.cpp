@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/registry.h"
-#include "memsys/dram_params.h"
+#include "memsys/dram/dram_params.h"
 #include "tests/support/catch.h"
 
 using namespace glint;

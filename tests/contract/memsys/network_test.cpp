@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/registry.h"
-#include "memsys/network_port.h"
+#include "memsys/messages/network_port.h"
 #include "memsys/params.h"
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"

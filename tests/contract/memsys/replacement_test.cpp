@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/registry.h"
-#include "memsys/tag_array.h"
+#include "memsys/cache/tag_array.h"
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
 

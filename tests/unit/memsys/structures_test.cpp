@@ -6,10 +6,10 @@
 
 #include "base/registry.h"
 #include "memsys/address_map.h"
-#include "memsys/dram_timing.h"
-#include "memsys/fan_in.h"
-#include "memsys/mshr.h"
-#include "memsys/tag_array.h"
+#include "memsys/cache/mshr.h"
+#include "memsys/cache/tag_array.h"
+#include "memsys/dram/dram_timing.h"
+#include "memsys/messages/fan_in.h"
 #include "tests/support/catch.h"
 
 using namespace glint;

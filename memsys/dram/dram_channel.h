@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "memsys/address_map.h"
+#include "memsys/dram/dram_timing.h"
 #include "memsys/dram_model.h"
 #include "memsys/dram_scheduler.h"
-#include "memsys/dram_timing.h"
 
 namespace glint::mem {
 

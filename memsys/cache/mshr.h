@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/types.h"
-#include "memsys/line_table.h"
+#include "memsys/cache/line_table.h"
 
 namespace glint::mem {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
-#include "memsys/line_table.h"
+#include "memsys/cache/line_table.h"
 #include "memsys/replacement.h"
 
 namespace glint {

@@ -1,6 +1,6 @@
 // Construction of a tag array: its shape, and the policy that replaces its lines.
 // SPDX-License-Identifier: Apache-2.0
-#include "memsys/tag_array.h"
+#include "memsys/cache/tag_array.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // The events of an L2 slice: packets in, tags, the way to DRAM and back, replies out.
 // SPDX-License-Identifier: Apache-2.0
-#include "memsys/l2_slice.h"
+#include "memsys/cache/l2_slice.h"
 
 #include <algorithm>
 #include <cstdint>

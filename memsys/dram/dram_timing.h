@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "base/check.h"
-#include "memsys/clock_domains.h"
-#include "memsys/dram_params.h"
+#include "memsys/dram/clock_domains.h"
+#include "memsys/dram/dram_params.h"
 #include "memsys/request.h"
 
 namespace glint::mem {

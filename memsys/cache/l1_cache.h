@@ -10,15 +10,15 @@
 #include "base/probe.h"
 #include "base/stats.h"
 #include "memsys/address_map.h"
-#include "memsys/cache_stats.h"
+#include "memsys/cache/cache_stats.h"
+#include "memsys/cache/mshr.h"
+#include "memsys/cache/tag_array.h"
 #include "memsys/l1_port.h"
 #include "memsys/latency.h"
-#include "memsys/mshr.h"
-#include "memsys/network_port.h"
-#include "memsys/packet.h"
+#include "memsys/messages/network_port.h"
+#include "memsys/messages/packet.h"
 #include "memsys/params.h"
 #include "memsys/ring.h"
-#include "memsys/tag_array.h"
 
 namespace glint::mem {
 

@@ -1,6 +1,6 @@
 // What the L1 does with accesses, departures and fills.
 // SPDX-License-Identifier: Apache-2.0
-#include "memsys/l1_cache.h"
+#include "memsys/cache/l1_cache.h"
 
 #include <algorithm>
 #include <cstdint>

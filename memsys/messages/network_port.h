@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/types.h"
-#include "memsys/fan_in.h"
-#include "memsys/link.h"
+#include "memsys/messages/fan_in.h"
+#include "memsys/messages/link.h"
+#include "memsys/messages/packet.h"
 #include "memsys/network.h"
-#include "memsys/packet.h"
 
 namespace glint::mem {
 

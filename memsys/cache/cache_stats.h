@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/stats.h"
-#include "memsys/line_table.h"
+#include "memsys/cache/line_table.h"
 #include "memsys/request.h"
 
 namespace glint::mem {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "memsys/dram_params.h"
+#include "memsys/dram/dram_params.h"
 
 namespace glint::mem {
 namespace {
