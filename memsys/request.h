@@ -1,7 +1,9 @@
 // What travels between a core and the memory system: one request for sectors of one line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 #include "base/types.h"
@@ -31,6 +33,7 @@ constexpr std::string_view name_of(Traffic t) {
       "shader_global", "shader_local",  "shader_texture", "shader_surface", "shader_binding",
       "shader_atomic", "instruction",   "constant",       "rt_node",        "rt_instance",
       "rt_triangle",   "rt_procedural", "rt_table",       "rt_stack"};
+  static_assert(std::size(kNames) == size_t(Traffic::Count));
   return kNames[size_t(t)];
 }
 constexpr bool is_rt(Traffic t) {

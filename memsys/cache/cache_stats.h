@@ -3,6 +3,7 @@
 #pragma once
 #include <bit>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,7 @@ enum class Refusal : uint8_t { Port, Bank, MshrFull, MergeLimit, QueueFull, SetH
 constexpr std::string_view name_of(Refusal reason) {
   constexpr std::string_view kNames[] = {"port",        "bank",       "mshr_full",
                                          "merge_limit", "queue_full", "set_held"};
+  static_assert(std::size(kNames) == size_t(Refusal::Count));
   return kNames[size_t(reason)];
 }
 

@@ -248,7 +248,7 @@ void L1Cache::send_front(Cycle now) {
 bool L1Cache::fill(Cycle now) {
   const Reply reply = port_.front();
   const bool is_kept = !reply.is_atomic && !passing_[mshr_.find(reply.line)];
-  if (is_kept && !place(now, reply)) return false;
+  if (is_kept && !install(now, reply)) return false;
   ++stats_.fills;
   stats_.reply_bytes += bytes_of(reply);
   stats_.reply_wait += now - port_.arrival();
@@ -265,7 +265,7 @@ bool L1Cache::fill(Cycle now) {
   return true;
 }
 
-bool L1Cache::place(Cycle now, const Reply& reply) {
+bool L1Cache::install(Cycle now, const Reply& reply) {
   const uint32_t slot = tags_.find(reply.line);
   if (slot == kNone) {
     if (!tags_.has_victim(reply.line)) return true;  // nothing was held for it, and all else is

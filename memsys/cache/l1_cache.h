@@ -127,7 +127,7 @@ class L1Cache final : public L1Port {
   void send_front(Cycle now);
   bool fill(Cycle now);
   void hold(Cycle now, Address line, uint32_t slot);
-  bool place(Cycle now, const Reply& reply);
+  bool install(Cycle now, const Reply& reply);
   void answer_waiters(Cycle now, const Reply& reply);
   void count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,7 @@ enum class SliceCycle : uint8_t { Service, MshrFull, MergeLimit, QueueFull, Dram
 constexpr std::string_view name_of(SliceCycle cycle) {
   constexpr std::string_view kNames[] = {"service",   "mshr_full", "merge_limit", "queue_full",
                                          "dram_wait", "pipeline",  "idle"};
+  static_assert(std::size(kNames) == size_t(SliceCycle::Count));
   return kNames[size_t(cycle)];
 }
 

@@ -29,7 +29,7 @@ class LineTable {
   // `line` must be absent.
   void insert(Address line, uint32_t value) {
     if (2 * (size_ + 1) > cells_.size()) grow();
-    place({line, value});
+    put({line, value});
     ++size_;
   }
   // `line` must be present.
@@ -60,7 +60,7 @@ class LineTable {
 
   // Fibonacci hashing (Knuth, TAOCP 3, 6.4): the upper bits of a product with 2^64 / golden ratio.
   size_t home(Address line) const { return size_t((line * 0x9e37'79b9'7f4a'7c15ull) >> shift_); }
-  void place(Cell cell) {
+  void put(Cell cell) {
     size_t i = home(cell.line);
     while (cells_[i].line != kEmpty) i = (i + 1) & mask_;
     cells_[i] = cell;
@@ -74,7 +74,7 @@ class LineTable {
     std::vector<Cell> old = std::move(cells_);
     resize(old.size() * 2);
     for (const Cell& cell : old)
-      if (cell.line != kEmpty) place(cell);
+      if (cell.line != kEmpty) put(cell);
   }
 
   std::vector<Cell> cells_;

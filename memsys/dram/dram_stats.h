@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 #include "base/stats.h"
@@ -21,6 +22,7 @@ enum class DramUse : uint8_t {
 };
 constexpr std::string_view name_of(DramUse use) {
   constexpr std::string_view kNames[] = {"data", "turnaround", "column_wait", "refresh", "row_wait", "idle"};
+  static_assert(std::size(kNames) == size_t(DramUse::Count));
   return kNames[size_t(use)];
 }
 

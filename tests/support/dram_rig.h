@@ -29,12 +29,12 @@ class DramRig {
     DramMap map(params.banks, params.bank_groups, params.row_bytes, 256);
     for (Address local = 0; local < Address{params.banks} * params.row_bytes * 8; local += 256) {
       const DramLocation at = map.locate(local);
-      place_.try_emplace({at.bank, at.row}, local);
+      local_.try_emplace({at.bank, at.row}, local);
     }
   }
   void add(Cycle now, uint32_t bank, uint32_t row, bool write = false, uint32_t name = 0) {
     channel.advance(now);
-    channel.add(now, name * 128, 1, place_.at({bank, row}), write);
+    channel.add(now, name * 128, 1, local_.at({bank, row}), write);
   }
   // Runs to the end. Returns the cycle at which each read's data was complete, by name.
   std::map<uint32_t, Cycle> run() {
@@ -63,7 +63,7 @@ class DramRig {
   DramChannel channel;
 
  private:
-  std::map<std::pair<uint32_t, uint32_t>, Address> place_;
+  std::map<std::pair<uint32_t, uint32_t>, Address> local_;
   Cycle idle_ = 0;
 };
 
