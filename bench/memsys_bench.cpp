@@ -1,4 +1,4 @@
-// How fast the memory system simulates: accesses a second of host time, by where they are served.
+// How fast the host simulates the memory system: accesses a second, by where they are served.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace {
 using namespace glint;
 using namespace glint::mem;
 
-// Windows as the engine runs them: one core that tries one access a cycle over `lines`, in order of the list.
+// Runs windows as the engine does. One core tries one access a cycle; the accesses go over `lines` in order.
 void run(benchmark::State& state, const Params& params, const std::vector<Address>& lines) {
   stats::Group root(nullptr, "bench");
   MemorySystem memory(params, 1, 1365.0, &root);
@@ -79,7 +79,7 @@ void dram_stream(benchmark::State& state) {
   run(state, bare(), lines);
 }
 
-// One channel by itself, its queue kept full of random sectors.
+// Runs one channel by itself and keeps its queue full of random sectors.
 void dram_channel_random(benchmark::State& state) {
   stats::Group root(nullptr, "bench");
   const DramParams params = bare().dram;

@@ -7,11 +7,11 @@
 
 namespace glint::mem {
 
-// L2 slices, those of one memory partition next to each other. Memory is cut into chunks of `interleave`
-// bytes and the chunks into groups of one chunk a slice. Inside a group chunk r goes to slice (r +
-// hash(group)) mod N: each group fills every slice once, whatever N is, so slices stay equally full and their
-// local addresses dense; and the hash turns each group differently, so that strides which are multiples of N
-// chunks still spread. (IPOLY hashes need N = 16, 32 or 64.) Without a hash, chunk r goes to slice r, as
+// Spreads addresses over N L2 slices; those of one memory partition have consecutive numbers. Memory is cut
+// into chunks of `interleave` bytes, and N chunks in a row form a group. Inside a group chunk r goes to slice
+// (r + hash(group)) mod N. Each group fills every slice once, whatever N is, so slices stay equally full and
+// their local addresses are dense. The hash turns each group differently, so that strides which are multiples
+// of N chunks spread too. (IPOLY hashes need N = 16, 32 or 64.) Without a hash, chunk r goes to slice r, as
 // GPGPU-Sim does with memory partition index 0.
 class PartitionMap {
  public:
@@ -26,7 +26,8 @@ class PartitionMap {
   }
   uint32_t partition_of(uint32_t slice) const { return slices_of_one_ == 1 ? slice : slice / slices_of_one_; }
   uint32_t partition(Address address) const { return partition_of(slice(address)); }
-  // Dense inside the partition: group number and slice take the place of the chunk number.
+  // Returns the address inside the partition. Such addresses are dense: the numbers of group and slice
+  // replace the number of the chunk.
   Address local(Address address, uint32_t slice) const {
     const uint64_t chunk = address / interleave_ / slices_ * slices_of_one_ + slice % slices_of_one_;
     return chunk * interleave_ + address % interleave_;
@@ -50,9 +51,10 @@ struct DramLocation {
   uint32_t row = 0;
 };
 
-// Banks and rows, from the low end of the local address: interleave chunk, bank group, rest of the column,
-// bank in the group, row. Neighbouring chunks so alternate between bank groups and never pay the longer
-// tCCD_L, and the row number turns the bank (permutation-based interleaving; Zhang, Zhu, Zhang, MICRO 2000).
+// Finds bank and row of a local address. From its low end, the address consists of interleave chunk, bank
+// group, rest of the column, bank in the group, and row. Neighbouring chunks alternate between bank groups
+// and never pay the longer tCCD_L. The row number turns the bank (permutation-based interleaving; Zhang, Zhu,
+// Zhang, MICRO 2000).
 class DramMap {
  public:
   DramMap(uint32_t banks, uint32_t groups, uint32_t row_bytes, uint32_t interleave)

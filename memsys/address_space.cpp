@@ -29,7 +29,7 @@ AddressSpace::~AddressSpace() {
 }
 
 Address AddressSpace::allocate(std::string name, uint64_t bytes) {
-  // Whole lines of the host: a line can be copied, whatever of it is used.
+  // The host's bytes are whole cache lines, so that a line can be copied even where only a part is used.
   const size_t line = size_t(kHostAlignment),
                host_bytes = size_t(bytes == 0 ? line : (bytes + line - 1) / line * line);
   auto* data = static_cast<std::byte*>(::operator new[](host_bytes, kHostAlignment));

@@ -1,4 +1,4 @@
-// The bytes of simulated memory: allocations in a 64-bit virtual space where every overrun is seen.
+// The bytes of simulated memory: allocations in a 64-bit virtual space in which every overrun shows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -12,10 +12,10 @@
 
 namespace glint::mem {
 
-// Every allocation starts at a multiple of 4 GiB, so that the upper 32 bits of an address name it and
-// an index that runs past the end, or before the start, falls where nothing is. Allocation 0 is never used:
+// Every allocation starts at a multiple of 4 GiB. The upper 32 bits of an address name the allocation, and an
+// index that runs past the end, or before the start, falls where nothing is. Allocation 0 is never used, so
 // null pointers fault. Choice: Vulkan leaves addresses open.
-// `physical` packs the allocations densely, as a driver would: caches and DRAM see physical addresses only.
+// Physical addresses pack the allocations densely, as a driver would. Caches and DRAM see only these.
 class AddressSpace {
  public:
   static constexpr int kShift = 32;
@@ -32,12 +32,13 @@ class AddressSpace {
   AddressSpace(const AddressSpace&) = delete;
   AddressSpace& operator=(const AddressSpace&) = delete;
 
-  // Zero-filled; 64-byte aligned on the host. A size past 4 GiB takes several consecutive numbers.
+  // Allocates bytes that are 0 and aligned to 64 bytes on the host. A size past 4 GiB takes several
+  // consecutive allocation numbers.
   Address allocate(std::string name, uint64_t bytes);
-  // Physical bytes that the machine keeps for itself: no program can address them. Returns the first.
+  // Reserves physical bytes for the machine, which no program can address; returns the first.
   Address reserve(uint64_t bytes);
 
-  // Host pointer to [address, address + bytes), or null when any of it is outside an allocation.
+  // Returns a host pointer to [address, address + bytes), or null when any byte lies outside an allocation.
   std::byte* find(Address address, uint64_t bytes) const {
     const uint64_t index = address >> kShift;
     const uint64_t offset = address & ((uint64_t{1} << kShift) - 1);
@@ -48,7 +49,7 @@ class AddressSpace {
   Address physical(Address address) const {
     return allocations_[address >> kShift].physical + (address & ((uint64_t{1} << kShift) - 1));
   }
-  // As data of T, which must lie inside an allocation: for hosts, not for shaders.
+  // Returns `count` objects of T, which must lie inside an allocation. The host uses it; shaders use find().
   template <class T>
   std::span<T> view(Address address, uint64_t count) const {
     return {reinterpret_cast<T*>(find(address, count * sizeof(T))), size_t(count)};
@@ -57,8 +58,8 @@ class AddressSpace {
     std::memcpy(find(address, bytes), from, bytes);
   }
 
-  // Of an access that find() refuses: "16 bytes past the end of 'binding 4 (Vertices)' (1200 bytes)": names
-  // the nearest allocation.
+  // Says where an access that find() refuses would have gone, relative to the nearest allocation: "16 bytes
+  // past the end of 'binding 4 (Vertices)' (1200 bytes)".
   std::string explain(Address address, uint64_t bytes) const;
   uint64_t bytes_allocated() const { return next_physical_; }
   const std::vector<Allocation>& allocations() const { return allocations_; }

@@ -17,21 +17,20 @@ struct DramParams;
 
 // Read data that has left the data bus.
 struct DramReturn {
-  Cycle ready = 0;  // core cycle at which its last transfer is over
+  Cycle ready = 0;  // core cycle in which its last transfer is over
   Address line = 0;
   uint8_t sectors = 0;
   Cycle command = 0;  // core cycle of its column command
 };
 
 // Contract (tests/contract/memsys/dram_model_test.cpp):
-//  - every added read comes back once in returns(), in order of `ready`, which lies after the cycle it was
-//  added in;
-//    writes give nothing back;
-//  - a place is taken from add() on until next_command() at the latest frees it: full() ends without further
-//  requests;
-//  - nothing depends on how often advance() is called, provided it is at each next_command();
-//  - every clock up to finish() is in `use` once, and data moves no faster than the bus;
-//  - no heap traffic once warm.
+//  - Every read that was added comes back once in returns(), in order of `ready`, which is later than its
+//    add(). Writes give nothing back.
+//  - A request holds an entry of the queue from add() on. Calls of advance() at next_command() free entries
+//    without further requests, so full() ends.
+//  - Results do not depend on how often advance() is called, as long as it is called at each next_command().
+//  - Every clock up to finish() is counted in `use` once, and data move no faster than the bus.
+//  - The model allocates nothing once it is warm.
 class DramModel {
  public:
   static constexpr PolicyKind kKind{"memory.dram.model", "memsys/dram_models"};
@@ -44,11 +43,12 @@ class DramModel {
   virtual ~DramModel() = default;
 
   bool full() const { return in_flight_ == capacity_; }
-  // Needs !full() and advance(now) before. The model sees the request at the next command clock edge.
+  // Adds a request, after advance(now) and only while !full(). The model sees it at the next edge of the
+  // command clock. `local` is the address inside the partition.
   virtual void add(Cycle now, Address line, uint8_t sectors, Address local, bool write) = 0;
-  // All that happens in the clocks up to core cycle `now`.
+  // Simulates the command clocks up to core cycle `now`.
   virtual void advance(Cycle now) = 0;
-  virtual void finish(Cycle end) = 0;  // closes the accounts at the end of a run
+  virtual void finish(Cycle end) = 0;  // attributes the clocks up to the end of the run
   Cycle next_command() const { return next_step_ == kNever ? kNever : clocks_.cycle_after(next_step_); }
   Ring<DramReturn>& returns() { return returns_; }  // in order of `ready`, which may lie ahead
   const Ring<DramReturn>& returns() const { return returns_; }
@@ -56,7 +56,7 @@ class DramModel {
   bool finished() const { return in_flight_ == 0 && returns_.empty(); }
   const DramStats& stats() const { return stats_; }
   const ClockDomains& clocks() const { return clocks_; }
-  DramClock data_clocks() const { return data_clocks_; }  // of the data bus, of one request
+  DramClock data_clocks() const { return data_clocks_; }  // clocks of the data bus that a request takes
 
  protected:
   DramModel(const Context& context, DramClock data_clocks);  // in dram_params.h
@@ -66,7 +66,7 @@ class DramModel {
   DramStats stats_;
   Ring<DramReturn> returns_;
   DramClock next_step_ = kNever;
-  size_t in_flight_ = 0;  // requests without their column command
+  size_t in_flight_ = 0;  // requests whose column command has not gone out
   const size_t capacity_;
 };
 

@@ -10,29 +10,29 @@ namespace glint::mem {
 struct DramRequest {
   uint32_t bank = 0;
   uint32_t row = 0;
-  uint64_t age = 0;  // grows from request to request: smaller is older
+  uint64_t age = 0;  // of two requests, the older has the smaller number
   bool write = false;
 };
 
-// Contract (tests/contract/dram_scheduler_test.cpp):
-//  - every added slot is picked exactly once, for the bank of its request;
-//  - pick() answers kNone when it holds nothing for the bank, and may do so to wait for an older request
-//  elsewhere,
-//    but of the banks asked in turn at least one gets a request while any is held;
-//  - the answer depends on the calls made and nothing else; no heap traffic after construction.
+// Contract (tests/contract/memsys/dram_scheduler_test.cpp):
+//  - Every slot that was added is picked exactly once, for the bank of its request.
+//  - pick() returns kNone when no request for the bank waits. It may also return kNone so that an older
+//    request of another bank goes first, but while any request waits, at least one of all banks gets one.
+//  - The answer depends on the calls made and on nothing else.
+//  - The scheduler allocates nothing after its construction.
 class DramScheduler {
  public:
   static constexpr PolicyKind kKind{"memory.dram.scheduler", "memsys/dram_schedulers"};
   struct Context {
     uint32_t banks = 0;
-    uint32_t capacity = 0;  // slots are below this
+    uint32_t capacity = 0;  // number of slots
   };
   static constexpr uint32_t kNone = ~0u;
   static constexpr uint32_t kClosed = ~0u;  // as `open_row`: the bank has none
 
   virtual ~DramScheduler() = default;
   virtual void add(uint32_t slot, const DramRequest& request) = 0;
-  // The slot the free `bank` works on next, or kNone; the slot is forgotten.
+  // Returns the slot that the free `bank` works on next, or kNone. The scheduler forgets the slot.
   virtual uint32_t pick(uint32_t bank, uint32_t open_row) = 0;
 };
 

@@ -10,27 +10,26 @@
 
 namespace glint::mem {
 
-enum class Client : uint8_t { Lsu, RtUnit, Code, Count };  // each has its own queue of completions
+enum class Client : uint8_t { Lsu, RtUnit, Code, Count };  // each has its own queue of completed reads
 
-// Contract (tests/contract/l1_port_test.cpp):
-//  - access() takes a request or refuses it (port, bank, MSHR or queue full this cycle); a refused request
-//  has
-//    changed nothing and may be tried again in a later cycle.
-//  - every accepted read gives its token back exactly once: after exactly the hit latency on a hit, when its
-//  last
-//    sector has arrived otherwise. Writes give nothing back.
-//  - reads of instructions and constants take none of its ports and banks, and it keeps none of their lines.
-//  - tokens of one client come back in order of readiness, ties in order of acceptance.
+// Contract (tests/contract/memsys/l1_port_test.cpp):
+//  - access() takes a request or refuses it, because a port, a bank, the MSHRs or a queue are full in this
+//    cycle. A refused request has changed nothing and may be tried again in a later cycle.
+//  - Every accepted read gives its token back exactly once: a hit after exactly the hit latency, any other
+//    read when its last sector has arrived. Writes give nothing back.
+//  - Reads of instructions and constants take no port and no bank, and their lines are not kept.
+//  - The tokens of one client come back in the order in which they are ready; of tokens ready in the same
+//    cycle, the one that was accepted first comes first.
 class L1Port {
  public:
   virtual ~L1Port() = default;
   virtual bool access(Cycle now, Client client, const Request& request) = 0;
   virtual std::optional<Token> pop(Cycle now, Client client) = 0;
   virtual void tick(Cycle now) = 0;
-  virtual Cycle next_event(Cycle now) const = 0;  // kNever when nothing is in flight here
+  virtual Cycle next_event(Cycle now) const = 0;  // kNever when nothing is in flight
   virtual uint32_t line_bytes() const = 0;
-  // Lines on what is on the way and for whom it waits, for a machine that is stuck; "" when there is nothing
-  // to say.
+  // Returns lines of text for a machine that is stuck: what is in flight, and what waits for it. They are ""
+  // when nothing is in flight.
   virtual std::string describe() const { return {}; }
 };
 

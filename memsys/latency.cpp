@@ -1,4 +1,4 @@
-// Percentiles of latencies, and their names.
+// Sums and percentiles of latencies, and the names of their buckets.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/latency.h"
 
@@ -8,7 +8,7 @@
 namespace glint::mem {
 namespace {
 
-// The last latency of a bucket.
+// Returns the last latency of a bucket.
 Cycle high_of(uint32_t bucket) {
   return Latencies::low_of(bucket + 1) - 1;
 }
@@ -25,19 +25,24 @@ LatencyStats::LatencyStats(stats::Group* parent, std::string name, const char* w
     : Group(parent, std::move(name)),
       reads_(this, "reads", "request", what,
              [](const LatencyStats& of, Traffic traffic) { return of.reads(traffic); }),
-      cycles_(this, "cycles", "cycle", "The sum of their latencies.",
+      cycles_(this, "cycles", "cycle", "Sum of the latencies of what `reads` counts, by traffic class.",
               [](const LatencyStats& of, Traffic traffic) {
                 uint64_t sum = 0;
                 for (const Latencies* part : of.parts_) sum += part->cycles(traffic);
                 return sum;
               }),
-      p50_(this, "p50", "cycle", "Half of them took no longer: the upper end of their bucket.",
+      p50_(this, "p50", "cycle",
+           "Latency that half of what `reads` counts did not exceed: the upper end of its bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 50); }),
-      p90_(this, "p90", "cycle", "90 of 100 took no longer.",
+      p90_(this, "p90", "cycle",
+           "Latency that 90 % of what `reads` counts did not exceed: the upper end of its bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 90); }),
-      p99_(this, "p99", "cycle", "99 of 100 took no longer.",
+      p99_(this, "p99", "cycle",
+           "Latency that 99 % of what `reads` counts did not exceed: the upper end of its bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 99); }),
-      buckets_(this, "Their number by class and latency, eight buckets an octave from 16 cycles on.") {
+      buckets_(this,
+               "What `reads` counts, by traffic class and latency; from 16 cycles on, each octave has eight "
+               "buckets.") {
 }
 
 uint64_t LatencyStats::count(Traffic traffic, uint32_t bucket) const {

@@ -1,5 +1,4 @@
-// How long reads take under the load of a run: counts by traffic class and latency, and the percentiles that
-// follow.
+// How long the reads of a run take: counts by traffic class and latency, and percentiles of them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -16,8 +15,9 @@
 
 namespace glint::mem {
 
-// Latencies by traffic class, in buckets: one a cycle below 16, then eight an octave, so that a bucket is at
-// most an eighth of its lower end wide. The last takes all from 983,040 cycles on.
+// Counts latencies by traffic class, in buckets. Below 16 cycles each cycle has a bucket, and above each
+// octave has eight, so that the width of a bucket is at most an eighth of its lower end. The last bucket
+// takes all latencies from 983,040 cycles on.
 class Latencies {
  public:
   static constexpr uint32_t kExact = 16, kOctaves = 16, kSteps = 8, kBuckets = kExact + kOctaves * kSteps;
@@ -49,20 +49,20 @@ class Latencies {
   std::array<OfClass, size_t(Traffic::Count)> classes_{};
 };
 
-// The sum of several of them as statistics. All `parts` are added before anything is read.
+// The sum of several Latencies as statistics. All parts are added before any statistic is read.
 class LatencyStats : public stats::Group {
  public:
-  // `what`: the interval that is measured, for the documentation: "From a read's acceptance ...".
+  // `what` says for the documentation which reads are counted and what is measured.
   LatencyStats(stats::Group* parent, std::string name, const char* what);
   void add(const Latencies& part) { parts_.push_back(&part); }
 
   uint64_t reads(Traffic traffic) const;
   uint64_t total() const;
-  // The last cycle of the bucket by which `of_100` of 100 reads were over; 0 without reads.
+  // Returns the last cycle of the bucket within which `of_100` of 100 reads were over, or 0 without reads.
   uint64_t percentile(Traffic traffic, uint32_t of_100) const;
 
  private:
-  // A number a traffic class; classes without reads are left out.
+  // One number for each traffic class that has reads.
   class ByTraffic final : public stats::BreakdownBase {
    public:
     ByTraffic(LatencyStats* of, std::string_view name, std::string_view unit, std::string_view doc,
@@ -74,7 +74,7 @@ class LatencyStats : public stats::Group {
     const LatencyStats& of_;
     uint64_t (*read_)(const LatencyStats&, Traffic);
   };
-  // Reads by class and bucket, "rt_node:64-71"; empty ones are left out.
+  // The number of reads for each class and bucket that has any; a name is "rt_node:64-71".
   class Buckets final : public stats::BreakdownBase {
    public:
     Buckets(LatencyStats* of, std::string_view doc);

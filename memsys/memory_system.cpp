@@ -1,4 +1,4 @@
-// Construction, and conservation at the end of a run.
+// Construction of the memory system, and the checks at the end of a run that nothing was lost.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/memory_system.h"
 
@@ -75,7 +75,7 @@ void MemorySystem::check_drained() const {
   check_conserved();
 }
 
-// What went down came through: nothing is counted twice or lost between two levels.
+// Checks that what left one level arrived at the next: nothing is counted twice or lost.
 void MemorySystem::check_conserved() const {
   uint64_t sent = 0, received = 0;         // bytes
   uint64_t timed = load_latency_.total();  // reads

@@ -16,8 +16,8 @@
 
 namespace glint::mem {
 
-// Owns all parts and wires them. The engine advances cells() and delivers channels(); each core ticks its own
-// l1() as part of its own cell. `params` must have passed check().
+// Owns all parts and connects them. The engine advances cells() and delivers channels(); each core ticks its
+// l1() as part of the core's own cell. `params` must have passed check().
 class MemorySystem {
  public:
   MemorySystem(const Params& params, uint32_t num_cores, double core_mhz, stats::Group* parent);
@@ -27,13 +27,13 @@ class MemorySystem {
   const Partition& partition(uint32_t index) const { return *partitions_[index]; }
   Partition& partition(uint32_t index) { return *partitions_[index]; }
   uint32_t num_cores() const { return uint32_t(l1s_.size()); }
-  Cycle written_until() const;  // end of the last write that reached a slice of the L2
+  Cycle written_until() const;  // the end of the last write that reached a slice of the L2
   uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
   const PartitionMap& map() const { return map_; }
 
   std::vector<Cell*> cells();  // the partitions, then the routers of the network
   std::vector<ChannelBase*> channels() { return network_->channels(); }
-  // The engine's window may be this long: no message arrives sooner after it was sent. At least 1.
+  // Returns the longest window that the engine may use, at least 1: no message arrives sooner.
   Cycle shortest_latency() const { return network_->shortest_latency(); }
 
   void finish(
@@ -46,11 +46,13 @@ class MemorySystem {
   double imbalance() const;
 
   stats::Group group_;
-  stats::Value imbalance_{&group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
-                          "Data clocks of the busiest channel over the mean of all: 1 is even."};
+  stats::Value imbalance_{
+      &group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
+      "Data clocks of the busiest DRAM channel, divided by the mean of all channels; 1 is even."};
   LatencyStats load_latency_{
       &group_, "load_latency",
-      "Reads answered by the L1s, atomics included, from their acceptance on, by traffic class."};
+      "Number of reads that the L1s have answered, atomics included, by traffic class; a latency is the time "
+      "from acceptance to answer."};
   PartitionMap map_;
   std::unique_ptr<Network> network_;
   std::vector<std::unique_ptr<stats::Group>> core_groups_;

@@ -1,4 +1,4 @@
-// What makes a memory configuration impossible, and the peaks of a possible one.
+// Which memory configurations are impossible, and the names of the choices.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/params.h"
 
@@ -37,7 +37,7 @@ class Checker {
   }
 
  private:
-  // Messages quote keys and nothing else: each gets its section in front.
+  // Puts the section in front of each key. Messages quote keys and nothing else.
   std::string with_section(const std::string& what) const {
     std::string out;
     bool opens = true;
@@ -56,7 +56,7 @@ class Checker {
 
 void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker& c) {
   c.at_least_one("dram.channels", d.channels, "a machine has at least one memory partition");
-  c.at_least_one("dram.queue", d.queue, "the scheduler needs a place for the request it serves");
+  c.at_least_one("dram.queue", d.queue, "the scheduler needs an entry for the request that it serves");
   c.at_least_one("dram.transfers_per_clock", d.transfers_per_clock, "data must move");
   c.require(d.bank_groups >= 1 && d.banks >= d.bank_groups && d.banks % d.bank_groups == 0,
             fmt::format("'dram.banks' is {}, expected a multiple of 'dram.bank_groups' = {}", d.banks,

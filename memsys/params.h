@@ -1,4 +1,4 @@
-// Parameters of the memory system: L1, network, L2 and DRAM, with what is impossible and what the peaks are.
+// Parameters of the memory system: L1, network, L2 and DRAM, and the check for impossible ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace glint::mem {
 
-// Defaults: the mobile part of Vulkan-Sim 2.0 and LumiBench (8 cores, 4 channels), with physical DRAM timing.
+// The defaults are the mobile part of Vulkan-Sim 2.0 and LumiBench (8 cores, 4 channels), with physical DRAM
+// timing.
 std::vector<std::string> l1_allocations();    // on_fill, on_miss
 std::vector<std::string> partition_hashes();  // mixed, none
 
@@ -24,8 +25,8 @@ struct L1Params {
   uint32_t ways = 0;
   PolicyChoice<Replacement> replacement{"lru"};  // Vulkan-Sim: "L"
   uint32_t hit_latency = 20;                     // Vulkan-Sim: gpgpu_l1_latency
-  uint32_t miss_latency = 20;  // the same: its tags are looked up at the end of the pipeline
-  uint32_t ports = 1;          // one 128 B line a cycle, as Volta's L1 delivers
+  uint32_t miss_latency = 20;                    // the same; tags are looked up at the end of the pipeline
+  uint32_t ports = 1;                            // Volta's L1 delivers one line of 128 B a cycle
   uint32_t banks = 1;
   uint32_t mshr_entries = 256;  // Vulkan-Sim: A:256:8
   uint32_t mshr_merges = 8;
@@ -33,81 +34,92 @@ struct L1Params {
   bool local_write_back = true;  // Vulkan-Sim: "L", local write-back, global write-through
   bool global_write_back = false;
   bool write_allocate = false;       // Vulkan-Sim: "N"; Accel-Sim's newer parts allocate
-  bool write_evict = false;          // GPGPU-Sim's global stores: what they hit is dropped
+  bool write_evict = false;          // GPGPU-Sim's global stores drop what they hit
   std::string allocate = "on_fill";  // Vulkan-Sim: "s", streaming
   bool fill_takes_access = true;     // Choice: arrays of one port; unpublished
 
   static constexpr auto params() {
     return std::tuple{
-        param(&L1Params::size, "size", "byte", "Capacity of the data array.", 0, uint64_t{1} << 30),
-        param(&L1Params::ways, "ways", "way", "Lines of a set; 0 makes the cache fully associative.", 0,
-              1 << 20),
-        policy(&L1Params::replacement, "replacement", "Which line of a set makes way for a new line."),
+        param(&L1Params::size, "size", "byte", "Number of bytes in the data array.", 0, uint64_t{1} << 30),
+        param(&L1Params::ways, "ways", "way",
+              "Number of lines in a set. 0 makes the cache fully associative.", 0, 1 << 20),
+        policy(&L1Params::replacement, "replacement", "Policy that chooses which line of a set makes way."),
         param(&L1Params::hit_latency, "hit_latency", "cycle",
-              "From an access to its token when all sectors are present.", 0, 10000),
+              "Cycles from an access to its token when all sectors are present.", 0, 10000),
         param(&L1Params::miss_latency, "miss_latency", "cycle",
-              "From an access to the earliest departure of its miss.", 0, 10000),
-        param(&L1Params::ports, "ports", "access/cycle", "Accesses taken a cycle.", 0, 64),
-        param(&L1Params::banks, "banks", "bank", "Banks, chosen by line; each takes one access a cycle.", 0,
-              64),
-        param(&L1Params::mshr_entries, "mshr_entries", "line", "Lines that can be on the way.", 0, 1 << 16),
+              "Cycles from an access to the earliest departure of its miss.", 0, 10000),
+        param(&L1Params::ports, "ports", "access/cycle",
+              "Number of accesses that the cache takes in a cycle.", 0, 64),
+        param(&L1Params::banks, "banks", "bank",
+              "Number of banks. Lines are spread over them, and each bank takes one access a cycle.", 0, 64),
+        param(&L1Params::mshr_entries, "mshr_entries", "line", "Number of lines that can be on the way.", 0,
+              1 << 16),
         param(&L1Params::mshr_merges, "mshr_merges", "request",
-              "Reads that can wait for one line, the first included.", 0, 1 << 12),
+              "Number of reads that can wait for one line, the first included.", 0, 1 << 12),
         param(&L1Params::miss_queue, "miss_queue", "packet",
-              "Misses, writes and write-backs waiting for the network.", 0, 1 << 16),
+              "Number of misses, writes and write-backs that can wait for the network.", 0, 1 << 16),
         flag(&L1Params::local_write_back, "local_write_back",
-             "Local memory is written back on eviction instead of written through."),
+             "Whether local memory is written back on eviction. Otherwise it is written through."),
         flag(&L1Params::global_write_back, "global_write_back",
-             "All other memory is written back on eviction as well."),
+             "Whether all other memory is written back on eviction. Otherwise it is written through."),
         flag(&L1Params::write_allocate, "write_allocate",
-             "A write that is written through keeps its whole sectors in a line; otherwise it allocates "
-             "none."),
+             "Whether a write that goes through allocates a line with the sectors that it covers whole. "
+             "Otherwise it allocates none."),
         flag(&L1Params::write_evict, "write_evict",
-             "A write that is written through drops the sectors that it hits; otherwise they get the new "
+             "Whether a write that goes through drops the sectors that it hits. Otherwise they get the new "
              "bytes."),
         choice(&L1Params::allocate, "allocate",
-               "When a miss takes its line: with the data (streaming), or already when it leaves, held until "
-               "then.",
+               "When a miss takes its line: when the data arrive (streaming), or when the miss is accepted. "
+               "Then "
+               "the line is held until the data arrive.",
                &l1_allocations),
         flag(&L1Params::fill_takes_access, "fill_takes_access",
-             "A fill keeps its bank from taking an access in the same cycle.")};
+             "Whether a fill keeps its bank from taking an access in the same cycle.")};
   }
 };
 
 struct NocParams {
   PolicyChoice<Network> topology{"crossbar"};  // Choice: unpublished
-  uint32_t core_request_bytes = 40;            // one flit a cycle: Vulkan-Sim icnt_flit_size
+  uint32_t core_request_bytes = 40;            // Vulkan-Sim: icnt_flit_size, one flit a cycle
   uint32_t core_reply_bytes = 40;
   uint32_t partition_request_bytes = 40;
   uint32_t partition_reply_bytes = 40;
   uint32_t request_latency = 48;  // with the L1 and L2 latencies: L2 hits take 160 cycles (TTA's baseline)
   uint32_t reply_latency = 48;
-  uint32_t credits = 16;  // Choice: a core's L1 can send no more than its miss queue; unpublished
-  uint32_t sides = 1;     // H100: 2, of which the far one costs 156 cycles more there and back
+  uint32_t credits = 16;  // Choice: as many as the miss queue of an L1 has entries; unpublished
+  uint32_t sides = 1;     // an H100 has 2; the far side costs 156 cycles more, there and back
   uint32_t far_latency = 0;
 
   static constexpr auto params() {
     return std::tuple{
-        policy(&NocParams::topology, "topology", "How cores and slices are connected."),
+        policy(&NocParams::topology, "topology", "Network that connects the cores with the L2 slices."),
         param(&NocParams::core_request_bytes, "core_request_bytes", "byte/cycle",
-              "Width of a core's port towards L2.", 0, 4096),
+              "Width of a core's port towards the network.", 0, 4096),
         param(&NocParams::core_reply_bytes, "core_reply_bytes", "byte/cycle",
-              "Width of a core's port from L2.", 0, 4096),
+              "Width of a core's port from the network.", 0, 4096),
         param(&NocParams::partition_request_bytes, "partition_request_bytes", "byte/cycle",
-              "Width of a partition's port from the cores.", 0, 4096),
+              "Width of an L2 slice's port from the network.", 0, 4096),
         param(&NocParams::partition_reply_bytes, "partition_reply_bytes", "byte/cycle",
-              "Width of a partition's port towards the cores.", 0, 4096),
+              "Width of an L2 slice's port towards the network.", 0, 4096),
         param(&NocParams::request_latency, "request_latency", "cycle",
-              "One way, core to partition, without port time.", 0, 10000),
+              "Cycles from a core's port to an L2 slice's port through the crossbar, without the time in "
+              "ports.",
+              0, 10000),
         param(&NocParams::reply_latency, "reply_latency", "cycle",
-              "One way, partition to core, without port time.", 0, 10000),
+              "Cycles from an L2 slice's port to a core's port through the crossbar, without the time in "
+              "ports.",
+              0, 10000),
         param(&NocParams::credits, "credits", "packet",
-              "Packets of one core that may be on their way to one L2 slice or wait there; 0 is no limit.", 0,
-              1 << 12),
+              "Number of packets of one core that may be on their way through the crossbar to one L2 slice, "
+              "or wait "
+              "there. 0: no limit.",
+              0, 1 << 12),
         param(&NocParams::sides, "sides", "side",
-              "Parts of the chip that cores and slices are split into evenly, in order.", 1, 16),
+              "Number of sides of the chip that the crossbar spans. Cores and L2 slices are split evenly, in "
+              "order.",
+              1, 16),
         param(&NocParams::far_latency, "far_latency", "cycle",
-              "One way between two sides, beyond the latency within one.", 0, 10000)};
+              "Extra cycles of one way through the crossbar between two sides of the chip.", 0, 10000)};
   }
 };
 
@@ -121,50 +133,58 @@ struct L2Params {
   uint32_t mshr_entries = 192;                   // Vulkan-Sim: A:192:4
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;      // Vulkan-Sim: dram_partition_queues
-  uint32_t atomic_interval = 2;  // Choice: unpublished; an H200: 2, and an eighth a lane (docs/validation.md)
+  uint32_t atomic_interval = 2;  // Choice: unpublished; an H200 has 2 and 1/8 a lane (docs/validation.md)
   double atomic_lane_interval = 0;
-  double write_visit =
-      0;  // an H200: 1.25, beside a cycle a whole sector and 1.31 one in part (docs/validation.md)
+  // An H200 has 1.25, with one cycle for a whole sector and 1.31 for a sector in part (docs/validation.md).
+  double write_visit = 0;
   double partial_interval = 0;
-  bool write_masks = true;         // GPGPU-Sim: byte masks, a sector is fetched when it is read
+  bool write_masks = true;         // GPGPU-Sim: byte masks; a sector is fetched when it is read
   bool fill_takes_service = true;  // Choice: arrays of one port; unpublished
 
   static constexpr auto params() {
     return std::tuple{
         param(&L2Params::slices, "slices", "slice",
-              "Slices of a partition, each with ports of its own, in front of its DRAM channel.", 1, 16),
-        param(&L2Params::slice_size, "slice_size", "byte", "Capacity of one slice.", 0, uint64_t{1} << 32),
-        param(&L2Params::ways, "ways", "way", "Lines of a set; 0 makes the slice fully associative.", 0,
-              1 << 20),
-        policy(&L2Params::replacement, "replacement", "Which line of a set makes way for a new line."),
+              "Number of L2 slices in a partition. Each slice has its own ports, and all share the DRAM "
+              "channel.",
+              1, 16),
+        param(&L2Params::slice_size, "slice_size", "byte", "Number of bytes in one slice.", 0,
+              uint64_t{1} << 32),
+        param(&L2Params::ways, "ways", "way",
+              "Number of lines in a set. 0 makes the slice fully associative.", 0, 1 << 20),
+        policy(&L2Params::replacement, "replacement", "Policy that chooses which line of a set makes way."),
         param(&L2Params::latency, "latency", "cycle",
-              "From service to the reply of a hit, or to the miss's way to DRAM.", 1, 10000),
+              "Cycles from the service of a packet to the reply of a hit, or to the departure of a miss to "
+              "DRAM.",
+              1, 10000),
         param(&L2Params::sectors_per_cycle, "sectors_per_cycle", "sector/cycle",
-              "Sectors read or written a cycle.", 0, 64),
-        param(&L2Params::mshr_entries, "mshr_entries", "line", "Lines that can be on the way.", 0, 1 << 16),
+              "Number of sectors that the slice reads or writes in a cycle.", 0, 64),
+        param(&L2Params::mshr_entries, "mshr_entries", "line", "Number of lines that can be on the way.", 0,
+              1 << 16),
         param(&L2Params::mshr_merges, "mshr_merges", "request",
-              "Reads that can wait for one line, the first included.", 0, 1 << 12),
+              "Number of reads that can wait for one line, the first included.", 0, 1 << 12),
         param(&L2Params::dram_queue, "dram_queue", "request",
-              "Sector reads and writes between the slice and the DRAM scheduler.", 0, 1 << 16),
+              "Number of reads and writes of sectors that can wait between the slice and the DRAM scheduler.",
+              0, 1 << 16),
         param(&L2Params::atomic_interval, "atomic_interval", "cycle",
-              "Cycles of the slice for each sector of an atomic, and for each turn at it where lanes take "
-              "turns.",
-              1, 1000),
+              "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns.", 1,
+              1000),
         param(&L2Params::atomic_lane_interval, "atomic_lane_interval", "cycle",
-              "Cycles of the slice for each lane of an atomic beside, to a sixteenth.", 0.0, 1000.0),
-        param(&L2Params::write_visit, "write_visit", "cycle",
-              "Cycles of the slice for each write, beside its sectors', which then take a cycle each; 0: "
-              "none, and sectors as read.",
-              0.0, 1000.0),
+              "Extra slice cycles per lane of an atomic, in steps of 1/16.", 0.0, 1000.0),
+        param(
+            &L2Params::write_visit, "write_visit", "cycle",
+            "Fixed slice cycles per write, plus one cycle per sector. 0: no fixed cost, and sectors cost the "
+            "same as for reads.",
+            0.0, 1000.0),
         param(&L2Params::partial_interval, "partial_interval", "cycle",
-              "Cycles of the slice for each sector that a write covers in part, to a sixteenth; 0: those of "
-              "a whole one.",
+              "Slice cycles per sector that a write covers in part, in steps of 1/16. 0: the same as for a "
+              "whole "
+              "sector.",
               0.0, 1000.0),
         flag(&L2Params::write_masks, "write_masks",
-             "A sector of which a part is written is fetched when it is read; otherwise each write covers "
-             "its sectors."),
+             "Whether the slice knows which words of a sector were written, and fetches a sector that was "
+             "written in part when it is read. Otherwise each write covers its sectors whole."),
         flag(&L2Params::fill_takes_service, "fill_takes_service",
-             "Sectors from DRAM take the slice's time as sectors read do.")};
+             "Whether sectors from DRAM take the slice's time, as sectors that are read do.")};
   }
 };
 
@@ -179,11 +199,13 @@ struct Params {
 
   static constexpr auto params() {
     return std::tuple{
-        param(&Params::line, "line", "byte", "Line of both cache levels.", 0, 4096),
-        param(&Params::interleave, "interleave", "byte", "Consecutive bytes that stay in one partition.", 0,
-              1 << 20),
+        param(&Params::line, "line", "byte", "Number of bytes in a line of both cache levels.", 0, 4096),
+        param(&Params::interleave, "interleave", "byte",
+              "Number of consecutive bytes that stay in one partition.", 0, 1 << 20),
         choice(&Params::hash, "hash",
-               "How addresses spread over slices: each round of them turned by a hash, or one after another.",
+               "How addresses spread over L2 slices: a hash turns each round over the slices, or the slices "
+               "follow "
+               "each other.",
                &partition_hashes),
         section(&Params::l1, "l1", "Data cache of each core."),
         section(&Params::noc, "noc", "Network between cores and partitions."),
@@ -193,8 +215,8 @@ struct Params {
   uint32_t num_slices() const { return dram.channels * l2.slices; }
 };
 
-// Reports every impossible combination with what was expected. Call before building a MemorySystem.
-// `section` ("memory.") stands before each key in the messages.
+// Reports every impossible combination with what was expected. It is called before a MemorySystem is built.
+// `section` ("memory.") stands in front of each key in the messages.
 void check(const Params& params, Diagnostics& diagnostics, const std::string& section = {});
 
 }  // namespace glint::mem

@@ -35,7 +35,7 @@ void Partition::advance(Cycle from, Cycle until) {
   account(until);
 }
 
-// Stages from back to front: what leaves makes room for what enters in the same cycle.
+// The stages run from back to front, so that what leaves makes room for what enters in the same cycle.
 void Partition::step(Cycle now) {
   sampler_.reach(now);
   dram_->advance(now);
@@ -57,7 +57,7 @@ Cycle Partition::next_work() const {
   const bool full = dram_->full();
   for (const auto& slice : slices_) {
     next = std::min(next, slice->next_work());
-    // A full scheduler moves only with one of its own events.
+    // A full DRAM model frees an entry only at its own next command.
     if (!full && !slice->to_dram().empty()) next = std::min(next, slice->to_dram().front().ready);
   }
   return next;

@@ -16,14 +16,15 @@
 
 namespace glint::mem {
 
-// A memory channel has got its first request, or has none left and has answered all.
+// A memory channel begins to work with its first request, and ends when it has answered all requests.
 struct DramTurn {
   Cycle cycle = 0;
-  bool works = false;     // from this cycle on
-  uint64_t requests = 0;  // that it has taken since the launch
+  bool works = false;     // whether it works from this cycle on
+  uint64_t requests = 0;  // requests that it has taken since the launch
 };
 
-// Slices hand requests to DRAM in turn, each in order. Every cycle of each slice has one reason.
+// Slices take turns to hand requests to DRAM; the requests of one slice keep their order. Every cycle of a
+// slice is counted under one reason.
 class Partition final : public Cell {
  public:
   // `ports`: one for each slice of this partition.
@@ -42,8 +43,8 @@ class Partition final : public Cell {
   Probe<DramTurn>& dram_turned() { return dram_turned_; }
   uint32_t num_slices() const { return uint32_t(slices_.size()); }
   const L2Slice& slice(uint32_t index) const { return *slices_[index]; }
-  const L2Stats& stats() const { return slices_[0]->stats(); }  // of its first slice
-  // Sums over the slices.
+  const L2Stats& stats() const { return slices_[0]->stats(); }  // of the first slice
+  // Returns the sum of a count over the slices.
   uint64_t sum(uint64_t (*of)(const L2Slice&)) const;
   uint64_t packets_received() const {
     return sum([](const L2Slice& s) { return s.packets_received(); });
@@ -70,7 +71,7 @@ class Partition final : public Cell {
   const std::unique_ptr<DramModel> dram_;
   std::vector<std::unique_ptr<L2Slice>> slices_;
   size_t turn_ = 0;      // the slice that may hand over first
-  bool worked_ = false;  // the channel, at the end of the last step
+  bool worked_ = false;  // whether the channel worked at the end of the last step
   Probe<DramTurn> dram_turned_;
   IntervalSampler sampler_;
 };

@@ -14,13 +14,13 @@ double gigabytes(double bytes) {
   return bytes / 1e9;
 }
 
-// Data bytes a cycle through a port whose every reply is one sector and takes whole cycles.
+// Returns the data bytes a cycle of a port when every reply has one sector. A reply takes whole cycles.
 double data_rate(uint32_t port_bytes) {
   const uint32_t packet = kSectorBytes + kHeaderBytes;
   return double(kSectorBytes) / double((packet + port_bytes - 1) / port_bytes);
 }
 
-// A line in one reply fills wide ports better.
+// Returns the better of this and the rate of replies with a whole line, which fill wide ports better.
 double best_data_rate(uint32_t port_bytes, uint32_t line) {
   const uint32_t packet = line + kHeaderBytes;
   return std::max(data_rate(port_bytes), double(line) / double((packet + port_bytes - 1) / port_bytes));

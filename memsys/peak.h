@@ -1,5 +1,5 @@
-// What a memory configuration could do at best, to hold against a data sheet, and where its levels do not fit
-// each other.
+// What a memory configuration could deliver at best, to compare with a data sheet, and which of its levels
+// cannot carry what another delivers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace glint::mem {
 
-// Bytes of data, without headers, a second; every reply of one sector.
+// Bandwidths are bytes of data a second, without headers.
 struct Peak {
   uint64_t l1_bytes = 0, l2_bytes = 0;  // capacities over all cores and slices
   double l1_bandwidth = 0;              // data of all cores' L1 hits
@@ -24,7 +24,7 @@ struct Peak {
 };
 Peak peak(const Params& params, uint32_t num_cores, double core_mhz);
 
-// Warns of what one level could deliver and the next not carry. `params` must have passed check().
+// Warns where one level could deliver more than the next can carry. `params` must have passed check().
 void warn(const Params& params, uint32_t num_cores, double core_mhz, Diagnostics& diagnostics,
           const std::string& section = {});
 

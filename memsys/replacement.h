@@ -18,15 +18,14 @@ struct CacheLine {
   bool used() const { return valid || dirty || held; }
 };
 
-// A slot is the place of one line: slot = set * ways + way.
+// A slot holds one line: slot = set * ways + way.
 //
 // Contract (tests/contract/memsys/replacement_test.cpp):
-//  - victim() returns a slot of the set whose line is not held, or kNone when every line of the set is held;
-//  - victim() changes nothing: asked again, it returns the same slot until a call reports an event of the
-//  set;
-//  - the answer depends on the lines of the set and on the events of the set, so that one set never changes
-//    the choice in another set, and no thread or window changes any choice;
-//  - there is no heap traffic after construction.
+//  - victim() returns a slot of the set whose line is not held, or kNone when every line of the set is held.
+//  - victim() changes nothing: it returns the same slot again until a call reports an event of the set.
+//  - The answer depends on the lines and the events of the set only. One set never changes the choice in
+//    another set, and no thread or window changes any choice.
+//  - The policy allocates nothing after its construction.
 class Replacement {
  public:
   static constexpr PolicyKind kKind{"*.replacement", "memsys/replacement"};

@@ -1,4 +1,4 @@
-// What travels between a core and the memory system: one request for sectors of one line.
+// What a core asks of the memory system: one request for sectors of one line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace glint::mem {
 
-// Why the traffic exists; every hit, miss and byte is counted under it. memsys knows nothing else of it.
+// What an access is for. Hits, misses and latencies are counted by it; memsys knows no more of an access.
 enum class Traffic : uint8_t {
   ShaderGlobal,
   ShaderLocal,
@@ -19,13 +19,13 @@ enum class Traffic : uint8_t {
   ShaderBinding,
   ShaderAtomic,  // read-modify-write at the L2
   Instruction,
-  Constant,  // lines for a core's caches of them: an L1 keeps none
+  Constant,  // as instructions: lines for caches of the core, which the L1 does not keep
   RtNode,
   RtInstance,
   RtTriangle,
   RtProcedural,
-  RtTable,  // candidates that wait for their shaders
-  RtStack,  // of rays
+  RtTable,  // tables of candidates that wait for their shaders
+  RtStack,  // the stacks of rays
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
@@ -40,31 +40,31 @@ constexpr bool is_rt(Traffic t) {
   return t >= Traffic::RtNode;
 }
 constexpr bool is_local(Traffic t) {
-  return t == Traffic::ShaderLocal || t == Traffic::RtStack;
-}  // one thread's own
+  return t == Traffic::ShaderLocal || t == Traffic::RtStack;  // memory that belongs to one thread
+}
 constexpr bool passes_l1(Traffic t) {
   return t == Traffic::Instruction || t == Traffic::Constant;
 }
 
 inline constexpr uint32_t kSectorBytes = 32;  // the unit of transfer between all levels (Volta and later)
 
-using Token = uint32_t;  // the requester's own name for a request; returned untouched
+using Token = uint32_t;  // the requester's name for a request, which comes back unchanged
 
-// Bit i: the i-th of 32 equal parts of a line, words of 4 bytes where it has 128. Model: such a part is
-// written whole or not at all; a store of less counts as if it left it open.
+// Bit i stands for the i-th of 32 equal parts of a line; in a line of 128 bytes the parts are words of 4
+// bytes. Model: a part counts as written only when a store covers it whole.
 using WordMask = uint32_t;
 inline constexpr WordMask kAllWords = ~WordMask{0};
-// Of one sector, in a line of `line_bytes`.
+// Returns the mask of one sector of a line of `line_bytes`.
 constexpr WordMask words_of_sector(uint32_t sector, uint32_t line_bytes) {
   const uint32_t words = 32 * kSectorBytes / line_bytes;
   return (kAllWords >> (32 - words)) << (sector * words);
 }
 
-// Of an atomic: lanes of a warp that meet in a word of a sector take turns, each with the sector's worth of
-// data.
+// What an atomic adds to a request. Lanes of a warp that meet in a word of a sector take turns, and each turn
+// moves the data of a whole sector.
 struct AtomicLanes {
   uint8_t lanes = 0;
-  uint8_t turns = 0;  // of all its sectors together; 0: one each
+  uint8_t turns = 0;  // of all its sectors together; 0 stands for one turn in each sector
 };
 
 struct Request {
@@ -72,14 +72,14 @@ struct Request {
   uint8_t sectors = 0;  // bit i: sector i of the line is wanted or written
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
-  Token token = 0;             // reads: comes back once when all sectors are there. Writes: not answered.
-  WordMask words = kAllWords;  // of a write: which words of the line it covers
+  Token token = 0;             // of a read, comes back once when all sectors are there; writes have no answer
+  WordMask words = kAllWords;  // of a write: the words of the line that it covers
+  // An atomic (Traffic::ShaderAtomic) is a "read" whose token comes back when the L2 has changed the sectors,
+  // or a "write" that has no answer.
   AtomicLanes atomic{};
-  // Traffic::ShaderAtomic: a "read" whose token comes back when the L2 has changed the sectors, or a "write"
-  // likewise without an answer.
 };
 
-// The sectors of a write (a Request or what becomes of it) that it covers.
+// Returns the sectors that a write covers whole. `Write` is a Request or a Packet.
 template <class Write>
 constexpr uint8_t covered_sectors(const Write& request, uint32_t line_bytes) {
   if (request.words == kAllWords) return request.sectors;

@@ -1,5 +1,4 @@
-// Where the time of a miss goes: the stages between an L1's miss and its fill, and the stamps that tell them
-// apart.
+// Where the time of a miss goes: its stages from the miss of an L1 to its fill, and the stamps between them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -13,16 +12,17 @@
 
 namespace glint::mem {
 
-// In the order in which a read passes them. The queues take no time when nothing else is on the way.
+// A read passes the stages in this order; each begins where the one before ends. The queues take no time when
+// nothing else is in flight.
 enum class Stage : uint8_t {
-  L1Queue,      // accepted by the L1 -> its packet starts to leave: tags, miss queue, request port
-  Request,      // -> all of it has come to the partition
-  L2Queue,      // -> the slice serves it: those before it, and MSHRs, merges and places that are missing
-  L2Service,    // -> the slice's answer, or the miss goes on
-  DramWay,      // -> the DRAM scheduler could see it
-  DramQueue,    // -> its column command: those before it, and rows that are opened for it
-  DramService,  // -> its last data is there
-  Reply,        // -> the L1 has filled it in: reply ports, the way back, the fill port
+  L1Queue,    // from acceptance by the L1 until the packet starts to leave: tags, miss queue, request port
+  Request,    // until the whole packet has come to the slice
+  L2Queue,    // until the slice serves it: other packets, and MSHRs, merges or queue entries that are missing
+  L2Service,  // until the slice's answer, or until the miss leaves the slice
+  DramWay,    // until the DRAM scheduler can see it
+  DramQueue,  // until its column command: other requests, and the row that is opened for it
+  DramService,  // until its last data are there
+  Reply,        // until the L1 has filled the data in: reply ports, the way back, the fill port
   Count
 };
 constexpr std::string_view name_of(Stage stage) {
@@ -32,19 +32,21 @@ constexpr std::string_view name_of(Stage stage) {
   return kNames[size_t(stage)];
 }
 
-// When each stage but the last ended. Modulo 2^32: only differences are used, and no miss takes that long.
+// The cycle in which each stage but the last ended, modulo 2^32: only differences are used, and no miss takes
+// that long.
 struct Stamps {
   std::array<uint32_t, size_t(Stage::Count) - 1> end{};
-  uint32_t accepted = 0;  // of an atomic by its L1; other reads wait there, and each knows its own
+  uint32_t accepted =
+      0;  // when the L1 accepted an atomic; other reads wait in the L1, which knows their cycle
   void set(Stage stage, Cycle cycle) { end[size_t(stage)] = uint32_t(cycle); }
-  // From `stage` on up to the reply, all ended at `cycle`: the read goes no further down.
+  // Lets all stages from `stage` up to the reply end at `cycle`, because the read goes no further down.
   void set_rest(Stage stage, Cycle cycle) { std::fill(end.begin() + int(stage), end.end(), uint32_t(cycle)); }
 };
 
-// Splits [accepted, filled): exactly, whatever the stamps say. Who came when the data was already on its way
-// has no part in the stages that were over by then.
+// Splits [accepted, filled) into stages; the parts add up exactly. A read that came when the data were
+// already on their way has no part in the stages that were over by then.
 inline void add_stages(stats::Breakdown<Stage>& to, Cycle accepted, Cycle filled, const Stamps& stamps) {
-  auto left = uint32_t(filled - accepted);  // of the latency, from the stage on
+  auto left = uint32_t(filled - accepted);  // what the stages from this one on share
   for (size_t i = 0; i < stamps.end.size(); ++i) {
     const uint32_t after = std::min(left, uint32_t(filled) - stamps.end[i]);
     to.add(Stage(i), left - after);

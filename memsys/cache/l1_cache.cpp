@@ -1,4 +1,4 @@
-// What the L1 does with accesses, departures and fills.
+// What the L1 does with accesses, with packets that leave, and with fills.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/cache/l1_cache.h"
 
@@ -93,14 +93,14 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
   return true;
 }
 
-// Keeps a line for data on its way; evicts another for it when it has none.
+// Holds a line for data on their way, and evicts another line for it when the line is absent.
 void L1Cache::hold(Cycle now, Address line, uint32_t slot) {
   if (slot == kNone) evict(now, tags_.victim(line));
   (slot == kNone ? tags_.insert(line) : tags_.line(slot)).held = true;
 }
 
-// Write-through: sectors that are present stay valid, with the new bytes. A line that is absent is allocated
-// when asked for, with the sectors that the write covers.
+// Writes through: sectors that are present stay valid, with the new bytes. With `write_allocate`, a line that
+// is absent is allocated with the sectors that the write covers.
 bool L1Cache::write_through(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   const uint8_t covered = params_.write_allocate ? covered_sectors(request, line_bytes_) : uint8_t{0};
@@ -126,7 +126,7 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
   return true;
 }
 
-// Counted as a miss: nothing of it is looked up here.
+// Sends an atomic to the L2. It counts as a miss, because the L1 looks nothing up for it.
 bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   if (queue_full()) return refuse(Refusal::QueueFull);
   const uint32_t slot = tags_.find(request.line);
@@ -154,7 +154,8 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   return true;
 }
 
-// Write-back with write-validate: whole sectors are written, so nothing needs to be fetched.
+// Writes into the cache, to be written back later. Whole sectors are written, so nothing needs to be fetched
+// (write-validate).
 bool L1Cache::write_back(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   if (slot == kNone) {
@@ -175,8 +176,7 @@ bool L1Cache::write_back(Cycle now, const Request& request) {
 }
 
 void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
-  // A write-back of a fill is ready at once and may not overtake; the queue is in order, so it waits for
-  // those before it.
+  // The write-back of a fill is ready at once, but may not overtake packets: the queue keeps its order.
   miss_queue_.push({ready, packet});
   miss_queue_.back().packet.core = core_;
   miss_queue_.back().packet.slice = uint16_t(map_.slice(packet.line));
@@ -223,8 +223,7 @@ void L1Cache::tick(Cycle now) {
   for (;;) {
     const Cycle departure = next_departure(), arrival = next_fill();
     if (std::min(departure, arrival) > now) return;
-    if (departure <=
-        arrival) {  // departures first: a place in the queue freed this cycle can take a write-back
+    if (departure <= arrival) {  // departures go first: the entry that one frees can take a write-back
       send_front(departure);
     } else if (!fill(arrival)) {
       fill_blocked_ = true;
@@ -243,8 +242,7 @@ void L1Cache::send_front(Cycle now) {
   if (fill_blocked_) fill_blocked_ = false, fill_not_before_ = now;
 }
 
-// Takes the oldest reply; false when it needs a place in the cache and its dirty victim finds none in the
-// miss queue.
+// Takes the oldest reply. Returns false when its line has a dirty victim and the miss queue is full.
 bool L1Cache::fill(Cycle now) {
   const Reply reply = port_.front();
   const bool is_kept = !reply.is_atomic && !passing_[mshr_.find(reply.line)];
@@ -268,7 +266,7 @@ bool L1Cache::fill(Cycle now) {
 bool L1Cache::install(Cycle now, const Reply& reply) {
   const uint32_t slot = tags_.find(reply.line);
   if (slot == kNone) {
-    if (!tags_.has_victim(reply.line)) return true;  // nothing was held for it, and all else is
+    if (!tags_.has_victim(reply.line)) return true;  // all lines are held for others: the data are not kept
     const TagArray::Line& victim = tags_.victim(reply.line);
     if (victim.dirty && queue_full()) return false;
     evict(now, victim);

@@ -24,46 +24,54 @@ namespace glint::mem {
 
 struct L1Stats : CacheStats {
   explicit L1Stats(stats::Group* parent) : CacheStats(parent, "l1") {}
-  stats::Breakdown<Refusal> refusals{&group, "refusals", "attempt",
-                                     "Requests turned away; the unit tries again in a later cycle."};
-  stats::Counter fills{&group, "fills", "reply", "Replies written into the cache; at most one a cycle."};
-  stats::Counter request_bytes{&group, "request_bytes", "byte", "Sent into the network, headers included."};
-  stats::Counter reply_bytes{&group, "reply_bytes", "byte", "Received from the network, headers included."};
+  stats::Breakdown<Refusal> refusals{
+      &group, "refusals", "attempt",
+      "Number of refused attempts, by reason; the unit tries again in a later cycle."};
+  stats::Counter fills{&group, "fills", "reply",
+                       "Number of replies that the cache took, at most one a cycle."};
+  stats::Counter request_bytes{&group, "request_bytes", "byte",
+                               "Bytes that the cache sent into the network, headers included."};
+  stats::Counter reply_bytes{&group, "reply_bytes", "byte",
+                             "Bytes that the cache received from the network, headers included."};
   stats::Counter request_wait{&group, "request_wait", "cycle",
-                              "Sum over packets of the cycles they waited for the request port."};
+                              "Sum over packets of the cycles that they waited for the request port."};
   stats::Counter reply_wait{&group, "reply_wait", "cycle",
-                            "Sum over replies of the cycles between arrival and fill."};
+                            "Sum over replies of the cycles from arrival to fill."};
   stats::Histogram miss_latency{&group, "miss_latency", "cycle", stats::linear(0, 2048, 32),
-                                "From a read that did not hit to its last sector."};
-  stats::Histogram l2_latency{&group, "l2_latency", "cycle", stats::linear(0, 2048, 32),
-                              "The same, of those whose last sector the L2 had."};
-  stats::Histogram dram_latency{&group, "dram_latency", "cycle", stats::linear(0, 2048, 32),
-                                "The same, of those whose last sector came from DRAM."};
-  stats::Counter timed_misses{&group, "timed_misses", "request",
-                              "Reads in them: all that did not hit, but atomics."};
-  stats::Counter miss_cycles{&group, "miss_cycles", "cycle", "Sum of their latencies."};
-  stats::Ratio mean_miss_latency{&group,       "mean_miss_latency",
-                                 "cycle",      miss_cycles,
-                                 timed_misses, "Mean latency of a read that did not hit."};
+                                "Cycles from a read that did not hit to its last sector."};
+  stats::Histogram l2_latency{
+      &group, "l2_latency", "cycle", stats::linear(0, 2048, 32),
+      "Cycles from a read that did not hit to its last sector, where the L2 had that sector."};
+  stats::Histogram dram_latency{
+      &group, "dram_latency", "cycle", stats::linear(0, 2048, 32),
+      "Cycles from a read that did not hit to its last sector, where that sector came from DRAM."};
+  stats::Counter timed_misses{
+      &group, "timed_misses", "request",
+      "Number of reads that `miss_latency` counts: those that did not hit, without atomics."};
+  stats::Counter miss_cycles{&group, "miss_cycles", "cycle",
+                             "Sum of the latencies that `miss_latency` counts."};
+  stats::Ratio mean_miss_latency{
+      &group,      "mean_miss_latency", "cycle",
+      miss_cycles, timed_misses,        "Mean cycles from a read that did not hit to its last sector."};
   stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle",
-                                      "The sum of their latencies, by stage."};
+                                      "Sum of the latencies that `miss_latency` counts, by stage."};
 };
 
-// A read that was counted as a miss, told when the L1 takes it.
+// An event: the L1 has taken a read that counts as a miss.
 struct ReadMissed {
   Client client = Client::Lsu;
   const Request& request;
 };
 
-// An accepted miss or write becomes one packet in the bounded miss queue and leaves over the core's port of
-// the network, when the network has room for it. Lines are allocated when data arrives (streaming), so that
-// only MSHRs and the miss queue limit the misses in flight; or (`allocate`) when the miss is accepted, and
-// held until then. Lines of instructions and constants pass through MSHRs and miss queue for caches of the
-// core that keep them. Atomics go past the cache to the L2, which executes them; what the cache holds of
-// their sectors is dropped. Model: a write covers whole sectors; a write to a line on its way does not
-// disturb it. Model: a read that waits for a sector already on its way is ready when the sector is, even
-// within the hit latency. Model: local memory that is dirty at the end of a run is not written back: its
-// thread is gone.
+// An accepted miss or write becomes one packet in the bounded miss queue. The packet leaves through the
+// core's port when the network has room for it. Usually a line is allocated when its data arrive (streaming),
+// so that only MSHRs and the miss queue limit the misses in flight. With `allocate = "on_miss"` a line is
+// allocated when its miss is accepted, and held until the data arrive. Lines of instructions and constants
+// pass through MSHRs and miss queue to caches of the core, which keep them. Atomics pass the cache and are
+// executed by the L2; the cache drops their sectors. Model: a write covers whole sectors, and a write to a
+// line on its way does not disturb the line. Model: a read that waits for a sector on its way is ready when
+// the sector is, even within the hit latency. Model: local memory that is dirty at the end of a run is not
+// written back, because its thread is gone.
 class L1Cache final : public L1Port {
  public:
   L1Cache(const Params& params, uint16_t core, const PartitionMap& map, CorePort port, stats::Group* parent);
@@ -77,9 +85,9 @@ class L1Cache final : public L1Port {
 
   const L1Stats& stats() const { return stats_; }
   Probe<ReadMissed>& read_missed() { return read_missed_; }
-  // Of every read, from its acceptance until it can be popped.
+  // Returns the latencies of all reads, from acceptance until the token can be popped.
   const Latencies& latencies() const { return latencies_; }
-  // Holds nothing and waits for nothing; popped tokens equal accepted reads.
+  // Whether the cache holds no miss and no packet, and has given back the token of every accepted read.
   bool drained() const;
   uint64_t packets_sent() const { return packets_sent_; }
   uint64_t sectors_requested() const { return sectors_requested_; }
@@ -106,7 +114,7 @@ class L1Cache final : public L1Port {
     Cycle ready = 0;
     Packet packet;
   };
-  struct Answers {  // of one client; each ring is in order of readiness
+  struct Answers {  // the completed reads of one client; each ring is in order of readiness
     Ring<Completion> hits, fills;
   };
 
@@ -142,17 +150,19 @@ class L1Cache final : public L1Port {
   Latencies latencies_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
-  std::vector<uint8_t> passing_;  // an MSHR: its line is of instructions or constants, and is not kept
+  std::vector<uint8_t>
+      passing_;  // by MSHR: whether the cache does not keep the line (instructions, constants)
   LineTable seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;
-  Cycle port_cycle_ = kNever;  // accesses_ and busy_banks_ are of this cycle
+  Cycle port_cycle_ = kNever;  // the cycle that accesses_ and busy_banks_ belong to
   uint32_t accesses_ = 0;
   uint64_t busy_banks_ = 0;
-  Cycle filled_cycle_ = kNever;  // of the last fill, and its bank
+  Cycle filled_cycle_ = kNever;  // the cycle of the last fill, and its bank
   uint64_t filled_bank_ = 0;
-  Cycle fill_not_before_ = 0;  // one fill a cycle
-  bool fill_blocked_ = false;  // a dirty victim found the miss queue full: until a packet leaves
+  Cycle fill_not_before_ = 0;  // the earliest cycle of the next fill: there is one a cycle
+  bool fill_blocked_ =
+      false;  // a dirty victim found the miss queue full, so fills wait until a packet leaves
   uint64_t order_ = 0;
   uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0,
            tokens_returned_ = 0;

@@ -1,4 +1,4 @@
-// The events of an L2 slice: packets in, tags, the way to DRAM and back, replies out.
+// The events of an L2 slice: packets that come, tags, requests to DRAM and their data, replies that leave.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/cache/l2_slice.h"
 
@@ -10,7 +10,7 @@
 namespace glint::mem {
 namespace {
 
-// Of a cycle, at the nearest.
+// Returns `cycles` in parts of a cycle, rounded to the nearest.
 Cycle parts_of(double cycles, Cycle parts) {
   return Cycle(cycles * double(parts) + 0.5);
 }
@@ -45,7 +45,7 @@ void L2Slice::send_ready_replies(Cycle now) {
 
 Cycle L2Slice::next_work() const {
   Cycle next = hit_replies_.empty() ? kNever : hit_replies_.front().ready;
-  // A blocked head moves only when something has come back from DRAM or left for it.
+  // A blocked packet moves only when data have come from DRAM or a request has left for it.
   if (blocked_ == SliceCycle::Count) next = std::min(next, head_received());
   return next;
 }
@@ -54,7 +54,7 @@ Cycle L2Slice::head_received() const {
   return port_.arrival() == kNever ? kNever : std::max(port_.received(), busy_until_);
 }
 
-// The answer to a packet, or to some of its sectors.
+// Returns the answer to a packet, or to some of its sectors.
 Reply L2Slice::reply_to(const Packet& packet, uint8_t sectors) const {
   Reply reply{.line = packet.line,
               .slice = packet.slice,
@@ -121,8 +121,8 @@ Cycle L2Slice::service_parts(const Packet& packet) const {
   return Cycle{num_turns(packet)} * params_.atomic_interval * kParts + packet.atomic.lanes * lane_parts_;
 }
 
-// Writes may take parts of cycles, which are kept: one begins where the last packet ended, if it has waited
-// for that.
+// Keeps the slice busy with a packet. Writes may take parts of cycles: a packet that waited for the one
+// before begins in the part in which that one ended.
 void L2Slice::occupy(Cycle now, const Packet& packet) {
   const bool is_write = packet.write && !is_atomic(packet);
   const Cycle parts = is_write && visit_parts_ + partial_parts_ ? write_parts(packet) : service_parts(packet);
@@ -130,7 +130,7 @@ void L2Slice::occupy(Cycle now, const Packet& packet) {
   busy_until_ = (busy_parts_ + kParts - 1) / kParts;
 }
 
-// Of a sector written in part, the slice reads what it does not write.
+// Returns the time of a write, with the time of its own for sectors that are written in part.
 Cycle L2Slice::write_parts(const Packet& packet) const {
   const uint8_t covered = covered_sectors(packet, line_bytes_);
   if (visit_parts_ == 0)
@@ -140,7 +140,7 @@ Cycle L2Slice::write_parts(const Packet& packet) const {
          num_sectors(part) * partial_parts_;
 }
 
-// Reads, and atomics, which need what they change.
+// Serves a read, or an atomic, which needs the sectors that it changes.
 bool L2Slice::read(Cycle now, const Packet& packet) {
   const uint32_t slot = tags_.find(packet.line);
   const uint8_t missing = slot == kNone ? packet.sectors : uint8_t(packet.sectors & ~tags_.line(slot).valid);
@@ -165,7 +165,7 @@ bool L2Slice::read(Cycle now, const Packet& packet) {
   return true;
 }
 
-// Replies for what is here. An atomic waits for all of its sectors, and is done in one piece.
+// Answers the sectors that are present. An atomic waits for all of its sectors and is done at once.
 // Model: the atomics of one line follow each other at the slice's pace, whether they wait for DRAM or not.
 void L2Slice::answer_present(Cycle now, const Packet& packet, uint8_t missing) {
   const Cycle ready = now + (service_parts(packet) + kParts - 1) / kParts - 1 + params_.latency;
@@ -201,7 +201,8 @@ bool L2Slice::write(Cycle now, const Packet& packet) {
   return true;
 }
 
-// Which sectors of a write the slice then holds whole: those that were, that it covers, or that it completes.
+// Returns the sectors of a write that the slice then holds whole: they were valid, or the write covers or
+// completes them.
 uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t valid) {
   uint8_t out = 0;
   for (uint32_t i = 0; i < line_bytes_ / kSectorBytes; ++i) {
@@ -209,7 +210,7 @@ uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t vali
     if (!(packet.sectors & bit)) continue;
     const WordMask whole = words_of_sector(i, line_bytes_);
     if (!(tags_.line(slot).dirty & bit))
-      words_[slot] &= ~whole;  // of a line that was here before, or of old data
+      words_[slot] &= ~whole;  // what is there belongs to a line that was here before, or to old data
     words_[slot] |= packet.words & whole;
     if ((valid & bit) || (words_[slot] & whole) == whole)
       out |= bit;
@@ -219,7 +220,7 @@ uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t vali
   return out;
 }
 
-// One DRAM request an atom that holds any of `sectors`.
+// Queues one DRAM request for each atom that holds any of `sectors`.
 void L2Slice::queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write) {
   const uint32_t atom = (1u << atom_sectors_) - 1;
   for (uint32_t first = 0; first < line_bytes_ / kSectorBytes; first += atom_sectors_)
@@ -252,7 +253,7 @@ void L2Slice::send_reply(Cycle now, const Reply& reply) {
   ++replies_sent_;
 }
 
-// Why nothing is served from accounted_ on, until the next event.
+// Returns why nothing is served from accounted_ until the next event.
 SliceCycle L2Slice::reason(bool dram_works) const {
   if (blocked_ != SliceCycle::Count) return blocked_;
   if (dram_works) return SliceCycle::DramWait;
@@ -260,7 +261,7 @@ SliceCycle L2Slice::reason(bool dram_works) const {
   return SliceCycle::Idle;
 }
 
-// Attributes the cycles [accounted_, until), after the last event and before the next.
+// Attributes the cycles [accounted_, until), which lie after the last event and before the next.
 void L2Slice::account(Cycle until, bool dram_works) {
   if (until <= accounted_) return;
   const Cycle serving = std::clamp(busy_until_, accounted_, until) - accounted_;

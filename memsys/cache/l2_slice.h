@@ -20,7 +20,7 @@
 
 namespace glint::mem {
 
-// What a cycle of a slice went into: each cycle has exactly one.
+// What a cycle of a slice went into; each cycle has exactly one reason.
 enum class SliceCycle : uint8_t { Service, MshrFull, MergeLimit, QueueFull, DramWait, Pipeline, Idle, Count };
 constexpr std::string_view name_of(SliceCycle cycle) {
   constexpr std::string_view kNames[] = {"service",   "mshr_full", "merge_limit", "queue_full",
@@ -31,20 +31,24 @@ constexpr std::string_view name_of(SliceCycle cycle) {
 
 struct L2Stats : CacheStats {
   L2Stats(stats::Group* parent, const std::string& name) : CacheStats(parent, name) {}
-  stats::Breakdown<SliceCycle> cycles{&group, "cycles", "cycle", "What each cycle of the slice went into."};
+  stats::Breakdown<SliceCycle> cycles{&group, "cycles", "cycle",
+                                      "Number of cycles of the slice, by what they went into."};
   stats::Counter request_bytes{&group, "request_bytes", "byte",
-                               "Received from the network, headers included."};
-  stats::Counter reply_bytes{&group, "reply_bytes", "byte", "Sent into the network, headers included."};
+                               "Bytes that the slice received from the network, headers included."};
+  stats::Counter reply_bytes{&group, "reply_bytes", "byte",
+                             "Bytes that the slice sent into the network, headers included."};
   stats::Counter request_wait{&group, "request_wait", "cycle",
-                              "Sum over packets of the cycles between arrival and service."};
+                              "Sum over packets of the cycles from arrival to service."};
   stats::Counter reply_wait{&group, "reply_wait", "cycle",
-                            "Sum over replies of the cycles they waited for the reply port."};
-  stats::Counter dram_reads{&group, "dram_reads", "request", "Reads handed to the DRAM channel."};
-  stats::Counter dram_writes{&group, "dram_writes", "request", "Writes handed to the DRAM channel."};
+                            "Sum over replies of the cycles that they waited for the reply port."};
+  stats::Counter dram_reads{&group, "dram_reads", "request",
+                            "Number of reads that went to the DRAM channel."};
+  stats::Counter dram_writes{&group, "dram_writes", "request",
+                             "Number of writes that went to the DRAM channel."};
   stats::Counter partial_writes{&group, "partial_writes", "sector",
-                                "Sectors written in part that the slice did not hold."};
+                                "Number of sectors written in part that the slice did not hold."};
   stats::Counter completed_sectors{&group, "completed_sectors", "sector",
-                                   "Sectors written in part that came from DRAM for the rest."};
+                                   "Number of sectors written in part whose other bytes came from DRAM."};
 };
 
 // A request on its way from a slice to the DRAM scheduler.
@@ -55,23 +59,24 @@ struct ToDram {
   bool write = false;
 };
 
-// Packets are served in order of arrival, `sectors_per_cycle` of data a cycle. The head waits while an MSHR,
-// a merge or a place on the way to DRAM is missing, and all behind it wait too. Sectors that a write covers
-// are valid at once; of the others the slice knows the words written, keeps them until eviction and fetches
-// the sector when it is read. Sectors found are answered in one reply, sectors from DRAM one by one as they
-// arrive. Model: a fill always finds a place for its victim's write-back, which then counts against the way
-// to DRAM. Model: a sector that is written in part takes as long in DRAM as a whole one (data mask, no
-// read-modify-write). Model: dirty sectors left at the end of a run are not written back.
+// Packets are served in order of arrival, with `sectors_per_cycle` sectors of data a cycle. The oldest packet
+// waits while no MSHR, no merge or no entry of the queue to DRAM is free, and all packets behind it wait too.
+// Sectors that a write covers are valid at once. Of a sector that is written in part, the slice keeps the
+// words that were written until eviction, and fetches the sector when it is read. One reply has all sectors
+// that were found; sectors from DRAM are answered one by one as they arrive. Model: a fill always finds an
+// entry in the queue to DRAM for the write-back of its victim. Model: a sector that is written in part takes
+// as long in DRAM as a whole one (data mask, no read-modify-write). Model: dirty sectors left at the end of a
+// run are not written back.
 class L2Slice {
  public:
   L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SlicePort port, stats::Group* parent,
           const std::string& name);
 
-  // The stages of a cycle, back to front: the partition calls them.
+  // The partition calls these in each cycle, in this order, the last stage first.
   void fill(Cycle now, const DramReturn& data);
   void send_ready_replies(Cycle now);
   void serve(Cycle now);
-  Cycle next_work() const;  // of replies and packets; not of the way to DRAM
+  Cycle next_work() const;  // of replies and packets; the partition knows when DRAM has work
   void account(Cycle until, bool dram_works);
 
   Ring<ToDram>& to_dram() { return to_dram_; }
@@ -84,7 +89,9 @@ class L2Slice {
   uint64_t sectors_replied() const { return sectors_replied_; }
   uint64_t progress() const { return packets_received_ + replies_sent_; }
   bool finished() const;
-  Cycle written_until() const { return written_until_; }  // end of the last write or red
+  Cycle written_until() const {
+    return written_until_;
+  }  // the end of the last write or atomic without answer
   std::string describe(bool dram_works) const;
 
  private:
@@ -117,7 +124,7 @@ class L2Slice {
   bool dram_room(uint32_t requests) const { return to_dram_.size() + requests <= params_.dram_queue; }
   SliceCycle reason(bool dram_works) const;
 
-  static constexpr Cycle kParts = 16;  // of a cycle
+  static constexpr Cycle kParts = 16;  // parts of a cycle
 
   const L2Params params_;
   const Cycle visit_parts_, partial_parts_, lane_parts_;
@@ -128,16 +135,16 @@ class L2Slice {
   SlicePort port_;
   L2Stats stats_;
   TagArray tags_;
-  std::vector<WordMask> words_;  // by slot: what is written of its sectors that are dirty and not valid
+  std::vector<WordMask> words_;  // by slot: the words written in sectors that are dirty and not valid
   Mshr<Waiter> mshr_;
   LineTable seen_;
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
   Cycle busy_until_ = 0;
-  Cycle busy_parts_ = 0;  // the same to parts of a cycle
+  Cycle busy_parts_ = 0;  // the same in parts of a cycle
   Cycle written_until_ = 0;
   Cycle accounted_ = 0;
-  SliceCycle blocked_ = SliceCycle::Count;  // why the head could not be served; Count: it was not tried
+  SliceCycle blocked_ = SliceCycle::Count;  // why the oldest packet was refused; Count: it was not tried
   uint64_t packets_received_ = 0, sectors_requested_ = 0, sectors_replied_ = 0, replies_sent_ = 0;
 };
 

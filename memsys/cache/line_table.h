@@ -1,5 +1,4 @@
-// Open-addressed map from a line address to a small number: tags, MSHRs and the set of lines ever seen use
-// it.
+// An open-addressed map from a line address to a small number, for tags, MSHRs and sets of lines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -12,8 +11,9 @@
 
 namespace glint::mem {
 
-// Linear probing, at most half full, deletion by shifting back: no tombstones, so lookups never slow down.
-// Grows by doubling, and so allocates only while it holds more lines than ever before.
+// The table probes linearly, is at most half full, and deletes by shifting cells back; there are no
+// tombstones, so lookups never slow down. It doubles when it holds more lines than ever before, and allocates
+// only then.
 class LineTable {
  public:
   static constexpr uint32_t kNone = ~0u;
@@ -43,7 +43,7 @@ class LineTable {
     cells_[hole].line = kEmpty;
     --size_;
   }
-  // True when `line` was absent and is now remembered.
+  // Returns whether `line` was absent; the table then has it.
   bool insert_if_new(Address line) {
     if (find(line) != kNone) return false;
     insert(line, 0);
@@ -58,7 +58,7 @@ class LineTable {
     uint32_t value;
   };
 
-  // Fibonacci hashing (Knuth, TAOCP 3, 6.4): the upper bits of a product with 2^64 / golden ratio.
+  // Fibonacci hashing takes the upper bits of a product with 2^64 / golden ratio (Knuth, TAOCP 3, 6.4).
   size_t home(Address line) const { return size_t((line * 0x9e37'79b9'7f4a'7c15ull) >> shift_); }
   void put(Cell cell) {
     size_t i = home(cell.line);

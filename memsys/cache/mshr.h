@@ -1,4 +1,4 @@
-// Miss status holding registers: the lines being fetched and who waits for which of their sectors.
+// Miss status holding registers: the lines that are being fetched, and who waits for which of their sectors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace glint::mem {
 
-// A fixed number of entries, each with a fixed number of waiters. Waiter is a plain struct.
+// There is a fixed number of entries, each with a fixed number of waiters. `Waiter` is a plain struct.
 // Model: an entry covers a line and knows which of its sectors are on the way, where GPGPU-Sim gives each
 // 32-byte sector an entry of its own.
 template <class Waiter>
@@ -50,8 +50,8 @@ class Mshr {
     e.last = id;
     ++e.count;
   }
-  // `sectors` arrived: visits the waiters, oldest first; `visit` returns true for a waiter that is served.
-  // The entry is free again when nothing is on the way any more; every waiter must be served by then.
+  // Notes that `sectors` arrived and visits the waiters, oldest first; `visit` returns true for a waiter that
+  // is served. The entry is free again when no sector is on the way; every waiter must be served by then.
   template <class Visit>
   void arrive(uint32_t entry, uint8_t sectors, Visit&& visit) {
     Entry& e = entries_[entry];
@@ -82,7 +82,7 @@ class Mshr {
     Address line = 0;
     uint8_t pending = 0;                   // sectors on the way
     uint32_t count = 0;                    // waiters
-    uint32_t first = kNone, last = kNone;  // of the waiters; `first` links free entries
+    uint32_t first = kNone, last = kNone;  // waiters; `first` also links free entries
   };
   struct Link {
     Waiter waiter{};

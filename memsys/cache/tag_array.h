@@ -22,8 +22,8 @@ struct CacheShape {
 // The shape of a cache of `bytes`. With 0 ways it is fully associative: one set that has all lines.
 CacheShape cache_shape(uint64_t bytes, uint32_t ways, uint32_t line_bytes);
 
-// One hash table finds a line in any organisation, and a policy chooses which line makes way. Sectors are
-// bits of a byte: a line has at most 8 sectors of 32 bytes.
+// One hash table finds a line in any organisation, and a policy chooses which line makes way. Each sector is
+// a bit of a byte, so a line has at most 8 sectors of 32 bytes.
 class TagArray {
  public:
   static constexpr uint32_t kNone = LineTable::kNone;
@@ -37,7 +37,8 @@ class TagArray {
 
   uint32_t slot_of(const Line& line) const { return uint32_t(&line - lines_.data()); }
 
-  // The line that insert(address) would replace. Where lines may be held, ask has_victim() first.
+  // Returns the line that insert(address) would replace. Where lines may be held, has_victim() says whether
+  // there is one.
   const Line& victim(Address address) const { return lines_[victim_of(address)]; }
   bool has_victim(Address address) const { return victim_of(address) != kNone; }
 
@@ -69,7 +70,7 @@ class TagArray {
     replacement_->emptied(slot);
   }
 
-  // An access found its line in the slot.
+  // Notes that an access found its line in the slot.
   void touch(uint32_t slot) { replacement_->touched(slot); }
 
  private:

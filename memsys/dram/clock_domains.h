@@ -9,12 +9,12 @@
 
 namespace glint::mem {
 
-// Command clocks since launch. A type of its own in name only: never mix with Cycle.
+// A number of command clocks since launch. The compiler takes it for a Cycle: the two are never mixed.
 using DramClock = uint64_t;
 
-// Both clocks tick on multiples of a common tick and start together at 0. With clocks in whole kHz a core
-// cycle is dram_khz/g ticks and a command clock core_khz/g ticks, g their greatest common divisor: integers,
-// no drift. Products stay below 2^64 for 2^40 cycles and clocks up to 16 GHz.
+// Both clocks start together at 0 and have a common tick. With clocks in whole kHz, a core cycle has
+// dram_khz/g ticks and a command clock has core_khz/g ticks, where g is the greatest common divisor. All are
+// integers, so nothing drifts. Products stay below 2^64 for 2^40 cycles and clocks up to 16 GHz.
 class ClockDomains {
  public:
   ClockDomains(double core_mhz, double dram_mhz) {
@@ -24,9 +24,9 @@ class ClockDomains {
     cycle_ticks_ = dram / g;
     clock_ticks_ = core / g;
   }
-  // The last command clock edge at or before the start of a core cycle.
+  // Returns the last edge of the command clock at or before the start of a core cycle.
   DramClock clock_at(Cycle cycle) const { return cycle * cycle_ticks_ / clock_ticks_; }
-  // The first core cycle that starts at or after a command clock edge.
+  // Returns the first core cycle that starts at or after an edge of the command clock.
   Cycle cycle_after(DramClock clock) const {
     return (clock * clock_ticks_ + cycle_ticks_ - 1) / cycle_ticks_;
   }

@@ -1,4 +1,4 @@
-// Issues every command at the first clock that its timing allows, and what a command forbids afterwards.
+// How a DRAM channel issues each command in the first clock that its timing allows, and what that forbids.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/dram/dram_channel.h"
 
@@ -13,7 +13,7 @@ DramChannel::DramChannel(const Context& context)
       map_(context.params.banks, context.params.bank_groups, context.params.row_bytes, context.interleave),
       dual_command_bus_(context.params.dual_command_bus),
       scheduler_(context.params.scheduler.make({context.params.banks, context.params.queue})),
-      slots_(context.params.queue),  // a request keeps its place until its column command
+      slots_(context.params.queue),  // a request keeps its slot until its column command
       banks_(context.params.banks),
       group_gates_(context.params.bank_groups),
       group_turned_(context.params.bank_groups),
@@ -59,15 +59,15 @@ void DramChannel::step(DramClock now) {
     if (plan.column != kNone) pick_all();  // its bank is free for another request
     plan_from(now + 1);
   }
-  // With nothing to do, refreshes are made up for by the next step: nobody sees them.
+  // A channel without requests catches up on refreshes in its next step, because nothing can see them.
   next_step_ = busy_banks_ ? std::min(plan_.at, refresh_due_) : plan_.at;
 }
 
-// Gives free banks requests; true when any got one. Only a free bank or a new request changes what pick()
-// answers.
+// Gives requests to free banks; returns whether any bank got one. Only a free bank or a new request changes
+// the answers of pick().
 bool DramChannel::pick_all() {
   bool any = false;
-  for (bool again = true; again;) {  // an answer may make way for a bank that was asked before (fcfs)
+  for (bool again = true; again;) {  // a pick may allow one for a bank that was asked before (fcfs)
     again = false;
     for (uint64_t rest = waiting_banks_ & ~busy_banks_; rest; rest &= rest - 1)
       pick_for(uint32_t(std::countr_zero(rest)), again);
@@ -98,7 +98,7 @@ DramChannel::Command DramChannel::next_command_of(const Bank& bank) const {
   return request.write ? Write : Read;
 }
 
-// Finds the first clock from `first` on at which a command can go out.
+// Finds the first clock, not before `first`, in which a command can go out.
 void DramChannel::plan_from(DramClock first) {
   plan_ = {};
   for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
@@ -145,7 +145,7 @@ void DramChannel::issue_column(uint32_t index, DramClock now) {
   }
   if (stats_.reads.value() + stats_.writes.value() > 1 && write != last_was_write_) ++stats_.turnarounds;
   last_was_write_ = write;
-  // Like GPGPU-Sim, the transfer counts from its command on; that is CL or WL early and changes no sum.
+  // As in GPGPU-Sim, the transfer counts from its command on. That is CL or WL too early and changes no sum.
   data_until_ = now + t.data;
   stats_.busy_clocks += t.data;
   stats_.queue_clocks += now - slot.arrival;
@@ -187,8 +187,8 @@ void DramChannel::issue_row(uint32_t index, DramClock now) {
   ++stats_.activates;
 }
 
-// Attributes the clocks [accounted_, until), in which no command went out after the first, no bank changed
-// hands and no refresh fell due.
+// Attributes the clocks [accounted_, until). After the first of them no command goes out, no bank takes or
+// ends a request and no refresh falls due.
 void DramChannel::account(DramClock until) {
   if (until <= accounted_) return;
   const DramClock length = until - accounted_;
@@ -207,7 +207,7 @@ void DramChannel::account(DramClock until) {
   accounted_ = until;
 }
 
-// The clocks [from, until) without data, of which some bank has a request.
+// Attributes the clocks [from, until), in which some bank has a request and the bus carries no data.
 void DramChannel::account_waiting(DramClock from, DramClock until) {
   if (from == until) return;
   DramClock turned = kNever, refreshed = kNever;
@@ -227,13 +227,13 @@ void DramChannel::account_waiting(DramClock from, DramClock until) {
   stats_.use.add(open ? DramUse::ColumnWait : DramUse::RowWait, until - from - special);
 }
 
-// When the bus has turned for the column command of the bank's request.
+// Returns when the bus has turned for the column command of the bank's request.
 DramClock DramChannel::turned_at(uint32_t index) const {
   if (banks_[index].next == Write) return turned_[1];
   return std::max(turned_[0], group_turned_[bank_group_[index]]);
 }
 
-// Refreshes that have fallen due; true when there was one.
+// Does the refreshes that have fallen due; returns whether there was one.
 bool DramChannel::refresh_up_to(DramClock now) {
   if (refresh_due_ > now) return false;
   for (; refresh_due_ <= now; refresh_due_ += timing_.refresh_interval) {
@@ -251,7 +251,7 @@ void DramChannel::refresh(DramClock due) {
     refresh_bank(bank, closed_at(bank, due) + timing_.refresh_time);
     return;
   }
-  // One command closes all rows, so the last bank that may be closed holds up the others.
+  // One command closes all rows, so the bank that may be closed last holds up the others.
   DramClock precharge = 0, start = due;
   for (const Bank& bank : banks_) {
     start = std::max(start, bank.gates.at[Activate]);
@@ -261,7 +261,7 @@ void DramChannel::refresh(DramClock due) {
   for (Bank& bank : banks_) refresh_bank(bank, start + timing_.refresh_time);
 }
 
-// When the bank's row is closed and it can be refreshed, from `due` on: it then could be opened as well.
+// Returns when the bank can be refreshed, from `due` on: its row is closed, and it could be opened as well.
 DramClock DramChannel::closed_at(const Bank& bank, DramClock due) const {
   const DramClock closed = bank.row == kClosed ? due : std::max(due, bank.gates.at[Precharge]) + timing_.rp;
   return std::max(closed, bank.gates.at[Activate]);

@@ -32,10 +32,11 @@ void set_array(DramParams& p, uint32_t row_bytes, bool dual_command_bus, uint32_
   p.dual_command_bus = dual_command_bus, p.activate_clocks = activate_clocks;
 }
 
-// All from Ramulator 2.1's presets, clocks turned into nanoseconds. Order of the times:
+// All times are from Ramulator 2.1's presets, with clocks turned into nanoseconds. Their order is
 // rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l.
 
-// GDDR6-14000 at 1.35 V: tCK 0.57 ns, refresh every 3333, 211 or 106 clocks.
+// GDDR6-14000 at 1.35 V has a tCK of 0.57 ns. Refresh: 3333 clocks apart, 211 for all banks, 106 for one
+// bank.
 void gddr6_14000(DramParams& p) {
   set_bus(p, 1750.0, 8, 16, 2);
   set_array(p, 2048, false, 1);
@@ -43,7 +44,8 @@ void gddr6_14000(DramParams& p) {
             {15.4, 9.2, 15.4, 30.2, 45.0, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 4.56, 4.56, 16.5, 5.13, 6.27});
   set_refresh(p, 1900.0, 120.3, 60.4);
 }
-// Half the transfers a clock, as Vulkan-Sim's mobile part has 7 GT/s on a 1750 MHz command clock.
+// This kind has half the transfers a clock: Vulkan-Sim's mobile part has 7 GT/s on a command clock of 1750
+// MHz.
 void gddr6_7000(DramParams& p) {
   gddr6_14000(p);
   p.transfers_per_clock = 4;
@@ -53,8 +55,8 @@ void gddr6_14000_1v25(DramParams& p) {
   set_times(p,
             {17.1, 11.4, 17.1, 34.2, 51.3, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 6.27, 6.27, 24.5, 5.13, 6.27});
 }
-// LPDDR5-6400: tCK 1.25 ns, 16-bit channel; an activate is two commands (ACT-1, ACT-2); refresh of 16 Gb dies
-// every 3125, 224 or 112 clocks.
+// LPDDR5-6400 has a tCK of 1.25 ns and 16-bit channels; an activate is two commands (ACT-1, ACT-2). Refresh
+// of 16 Gb dies: 3125 clocks apart, 224 for all banks, 112 for one bank.
 void lpddr5_6400(DramParams& p) {
   set_bus(p, 800.0, 8, 16, 2);
   set_array(p, 2048, false, 2);
@@ -62,8 +64,8 @@ void lpddr5_6400(DramParams& p) {
       p, {18.75, 18.75, 18.75, 42.5, 61.25, 21.25, 11.25, 35.0, 10.0, 2.5, 5.0, 5.0, 5.0, 20.0, 6.25, 12.5});
   set_refresh(p, 3906.25, 280.0, 140.0);
 }
-// HBM3-6400, one pseudo-channel: tCK 0.625 ns, an activate takes 1.5 clocks of the row command bus; refresh
-// every 6240, 416 (8 Gb a channel) or 320 clocks.
+// A pseudo-channel of HBM3-6400 has a tCK of 0.625 ns; an activate takes 1.5 clocks of the row command bus.
+// Refresh: 6240 clocks apart, 416 for all banks (8 Gb a channel), 320 for one bank.
 void hbm3_6400(DramParams& p) {
   set_bus(p, 1600.0, 4, 8, 4);
   set_array(p, 1024, true, 2);
@@ -73,12 +75,14 @@ void hbm3_6400(DramParams& p) {
 }
 
 constexpr Kind kKinds[] = {
-    {"gddr6_7000", "GDDR6 at 7 GT/s with the times of GDDR6-14000 at 1.35 V: 14 GB/s a 16-bit channel.",
+    {"gddr6_7000", "GDDR6 at 7 GT/s with the times of GDDR6-14000 at 1.35 V; a 16-bit channel moves 14 GB/s.",
      gddr6_7000},
-    {"gddr6_14000", "GDDR6-14000 at 1.35 V: 28 GB/s a 16-bit channel.", gddr6_14000},
-    {"gddr6_14000_1v25", "GDDR6-14000 at 1.25 V: the same with slower rows.", gddr6_14000_1v25},
-    {"lpddr5_6400", "LPDDR5-6400: 12.8 GB/s a 16-bit channel.", lpddr5_6400},
-    {"hbm3_6400", "HBM3-6400: 25.6 GB/s a 32-bit pseudo-channel.", hbm3_6400}};
+    {"gddr6_14000", "GDDR6-14000 at 1.35 V; a 16-bit channel moves 28 GB/s.", gddr6_14000},
+    {"gddr6_14000_1v25",
+     "GDDR6-14000 at 1.25 V; a 16-bit channel moves 28 GB/s, and rows are slower than at 1.35 V.",
+     gddr6_14000_1v25},
+    {"lpddr5_6400", "LPDDR5-6400; a 16-bit channel moves 12.8 GB/s.", lpddr5_6400},
+    {"hbm3_6400", "HBM3-6400; a 32-bit pseudo-channel moves 25.6 GB/s.", hbm3_6400}};
 
 const Kind* find(std::string_view name) {
   const auto kind =

@@ -14,14 +14,14 @@
 
 namespace glint::mem {
 
-std::vector<std::string> dram_kinds();  // names, in the order of the table
+std::vector<std::string> dram_kinds();  // the names, in the order of their table
 std::string_view dram_kind_doc(std::string_view name);
-void apply_dram_kind(DramParams& params,
-                     std::string_view name);  // sets all that a data sheet says of one channel
+// Sets all that a data sheet says of one channel.
+void apply_dram_kind(DramParams& params, std::string_view name);
 std::vector<std::string> refresh_modes();
 
-// Choice: a kind is read before all other keys, whatever their order in the file, so that single keys change
-// it.
+// Choice: the kind is read before all other keys, whatever their order in a file, so that a single key can
+// change one number of the kind.
 struct DramKindParam {
   std::string_view name, doc;
 };
@@ -29,8 +29,8 @@ void read_param(ConfigTable& table, DramParams& out, const DramKindParam& param)
 void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const DramParams& params,
                     const DramKindParam& param);
 
-// Times in nanoseconds: a data sheet's numbers, rounded up to command clocks as JEDEC standards ask. The
-// defaults are the kind gddr6_7000.
+// Times are a data sheet's nanoseconds. They are rounded up to command clocks, as JEDEC standards ask. The
+// defaults are those of the kind gddr6_7000.
 struct DramParams {
   std::string kind = "gddr6_7000";
   uint32_t channels = 4;
@@ -48,7 +48,7 @@ struct DramParams {
   uint32_t activate_clocks = 1;
   uint32_t bus_turn = 2;  // GPGPU-Sim: tRTW = CL + BL + 2 - WL
   PolicyChoice<DramScheduler> scheduler{"frfcfs"};
-  // Ramulator 2.1, GDDR6-14000 at 1.35 V, clocks of 0.57 ns turned into times.
+  // These are the times of GDDR6-14000 at 1.35 V in Ramulator 2.1, with clocks of 0.57 ns as nanoseconds.
   double rcd = 15.4, rcd_write = 9.2, rp = 15.4, ras = 30.2, rc = 45.0;
   double cl = 13.7, wl = 3.4, wr = 15.4, rtp = 2.28;
   double ccd_s = 1.14, ccd_l = 2.28, rrd_s = 4.56, rrd_l = 4.56, faw = 16.5;
@@ -56,61 +56,79 @@ struct DramParams {
   std::string refresh = "all_bank";
   double refi = 1900.0, rfc = 120.3, rfc_bank = 60.4;
 
-  static constexpr auto params() {
+  static constexpr auto channel_params() {
     return std::tuple{
-        DramKindParam{"kind",
-                      "A part of this name sets the keys below up to `rfc_bank`, but `channels`, `queue`, "
-                      "`latency` and policies; keys that are given win."},
+        DramKindParam{
+            "kind",
+            "Memory part whose data sheet sets the geometry, the clock and the times of this section. "
+            "A key that a file gives wins over the part."},
         param(&DramParams::channels, "channels", "channel",
-              "Memory partitions, each one DRAM channel and its L2 slices.", 0, 1024),
+              "Number of memory partitions. Each has one DRAM channel and its L2 slices.", 0, 1024),
         policy(&DramParams::model, "model",
-               "How long the channel takes: commands of banks, or one latency and one bandwidth."),
-        param(&DramParams::bank_groups, "bank_groups", "group", "Bank groups of a channel.", 0, 64),
-        param(&DramParams::banks, "banks", "bank", "Banks of a channel, over all groups.", 0, 64),
-        param(&DramParams::row_bytes, "row_bytes", "byte", "Bytes of a row of one bank.", 0, 1 << 20),
+               "Model of the channel's timing: commands of banks, or one latency and one bandwidth."),
+        param(&DramParams::bank_groups, "bank_groups", "group", "Number of bank groups of a channel.", 0, 64),
+        param(&DramParams::banks, "banks", "bank", "Number of banks of a channel, over all groups.", 0, 64),
+        param(&DramParams::row_bytes, "row_bytes", "byte", "Number of bytes in a row of one bank.", 0,
+              1 << 20),
         param(&DramParams::bus_bytes, "bus_bytes", "byte", "Width of a channel's data bus.", 0, 1024),
-        param(&DramParams::clock_mhz, "clock_mhz", "MHz", "Command clock.", 1.0, 100000.0),
+        param(&DramParams::clock_mhz, "clock_mhz", "MHz", "Frequency of the command clock.", 1.0, 100000.0),
         param(&DramParams::transfers_per_clock, "transfers_per_clock", "transfer/clock",
-              "Data transfers a command clock.", 0, 64),
-        param(&DramParams::burst, "burst", "transfer", "Transfers of one column command.", 0, 256),
-        param(&DramParams::queue, "queue", "request", "Requests the scheduler chooses from.", 0, 1 << 16),
-        param(&DramParams::latency, "latency", "core cycle", "From the L2 slice to the scheduler's queue.", 0,
-              10000),
+              "Number of data transfers in a command clock.", 0, 64),
+        param(&DramParams::burst, "burst", "transfer", "Number of transfers of one column command.", 0, 256),
+        param(&DramParams::queue, "queue", "request",
+              "Number of requests that the scheduler can choose from.", 0, 1 << 16),
+        param(&DramParams::latency, "latency", "core cycle",
+              "Cycles from the L2 slice to the scheduler's queue.", 0, 10000),
         flag(&DramParams::dual_command_bus, "dual_command_bus",
-             "One row and one column command a clock, as HBM; otherwise one command a clock."),
+             "Whether a clock can carry one row and one column command, as in HBM. Otherwise a clock carries "
+             "one command."),
         param(&DramParams::activate_clocks, "activate_clocks", "clock",
-              "Clocks of the command bus for an activate.", 1, 8),
+              "Number of clocks of the command bus that an activate takes.", 1, 8),
         param(&DramParams::bus_turn, "bus_turn", "clock",
-              "Clocks of the data bus between a read's data and a write's.", 0, 1000),
-        policy(&DramParams::scheduler, "scheduler", "Which waiting request a free bank gets."),
-        param(&DramParams::rcd, "rcd", "ns", "Activate to read.", 0.0, 10000.0),
-        param(&DramParams::rcd_write, "rcd_write", "ns", "Activate to write.", 0.0, 10000.0),
-        param(&DramParams::rp, "rp", "ns", "Precharge to activate.", 0.0, 10000.0),
-        param(&DramParams::ras, "ras", "ns", "Activate to precharge.", 0.0, 10000.0),
-        param(&DramParams::rc, "rc", "ns", "Activate to activate of one bank.", 0.0, 10000.0),
-        param(&DramParams::cl, "cl", "ns", "Read command to its first data.", 0.0, 10000.0),
-        param(&DramParams::wl, "wl", "ns", "Write command to its first data.", 0.0, 10000.0),
-        param(&DramParams::wr, "wr", "ns", "Last write data to precharge.", 0.0, 10000.0),
-        param(&DramParams::rtp, "rtp", "ns", "Read command to precharge.", 0.0, 10000.0),
-        param(&DramParams::ccd_s, "ccd_s", "ns", "Column command to column command, other bank group.", 0.0,
+              "Clocks of the data bus from a read's data to a write's data.", 0, 1000),
+        policy(&DramParams::scheduler, "scheduler",
+               "Policy that chooses which waiting request a free bank gets.")};
+  }
+  static constexpr auto time_params() {
+    return std::tuple{
+        param(&DramParams::rcd, "rcd", "ns", "Time from activate to read (tRCD).", 0.0, 10000.0),
+        param(&DramParams::rcd_write, "rcd_write", "ns", "Time from activate to write (tRCDWR).", 0.0,
               10000.0),
-        param(&DramParams::ccd_l, "ccd_l", "ns", "Column command to column command, same bank group.", 0.0,
+        param(&DramParams::rp, "rp", "ns", "Time from precharge to activate (tRP).", 0.0, 10000.0),
+        param(&DramParams::ras, "ras", "ns", "Time from activate to precharge (tRAS).", 0.0, 10000.0),
+        param(&DramParams::rc, "rc", "ns", "Time from activate to activate of one bank (tRC).", 0.0, 10000.0),
+        param(&DramParams::cl, "cl", "ns", "Time from a read command to its first data (CL).", 0.0, 10000.0),
+        param(&DramParams::wl, "wl", "ns", "Time from a write command to its first data (WL).", 0.0, 10000.0),
+        param(&DramParams::wr, "wr", "ns", "Time from the last data of a write to precharge (tWR).", 0.0,
               10000.0),
-        param(&DramParams::rrd_s, "rrd_s", "ns", "Activate to activate, other bank group.", 0.0, 10000.0),
-        param(&DramParams::rrd_l, "rrd_l", "ns", "Activate to activate, same bank group.", 0.0, 10000.0),
-        param(&DramParams::faw, "faw", "ns", "Window that holds at most four activates.", 0.0, 10000.0),
-        param(&DramParams::wtr_s, "wtr_s", "ns", "Last write data to read command, other bank group.", 0.0,
+        param(&DramParams::rtp, "rtp", "ns", "Time from a read command to precharge (tRTP).", 0.0, 10000.0),
+        param(&DramParams::ccd_s, "ccd_s", "ns",
+              "Time from column command to column command in another bank group (tCCD_S).", 0.0, 10000.0),
+        param(&DramParams::ccd_l, "ccd_l", "ns",
+              "Time from column command to column command in the same bank group (tCCD_L).", 0.0, 10000.0),
+        param(&DramParams::rrd_s, "rrd_s", "ns",
+              "Time from activate to activate in another bank group (tRRD_S).", 0.0, 10000.0),
+        param(&DramParams::rrd_l, "rrd_l", "ns",
+              "Time from activate to activate in the same bank group (tRRD_L).", 0.0, 10000.0),
+        param(&DramParams::faw, "faw", "ns", "Length of a window that holds at most four activates (tFAW).",
+              0.0, 10000.0),
+        param(&DramParams::wtr_s, "wtr_s", "ns",
+              "Time from the last data of a write to a read command in another bank group (tWTR_S).", 0.0,
               10000.0),
-        param(&DramParams::wtr_l, "wtr_l", "ns", "Last write data to read command, same bank group.", 0.0,
+        param(&DramParams::wtr_l, "wtr_l", "ns",
+              "Time from the last data of a write to a read command in the same bank group (tWTR_L).", 0.0,
               10000.0),
         choice(&DramParams::refresh, "refresh",
-               "Whether rows are refreshed, and all banks at once or one after another.", &refresh_modes),
+               "Refresh of rows: none, of all banks at once, or of one bank after another.", &refresh_modes),
         param(&DramParams::refi, "refi", "ns",
-              "From refresh to refresh of the same rows' turn: of all banks, or of each bank.", 1.0, 1e6),
-        param(&DramParams::rfc, "rfc", "ns", "Refresh of all banks to activate.", 0.0, 1e5),
-        param(&DramParams::rfc_bank, "rfc_bank", "ns", "Refresh of one bank to its activate.", 0.0, 1e5)};
+              "Time from a refresh of all banks, or of one bank, to its next refresh (tREFI).", 1.0, 1e6),
+        param(&DramParams::rfc, "rfc", "ns", "Time from a refresh of all banks to an activate (tRFC).", 0.0,
+              1e5),
+        param(&DramParams::rfc_bank, "rfc_bank", "ns",
+              "Time from a refresh of one bank to an activate of that bank (tRFCpb).", 0.0, 1e5)};
   }
-  uint32_t atom_bytes() const { return bus_bytes * burst; }  // of one column command
+  static constexpr auto params() { return std::tuple_cat(channel_params(), time_params()); }
+  uint32_t atom_bytes() const { return bus_bytes * burst; }  // the data of one column command
 };
 
 inline DramModel::DramModel(const Context& context, DramClock data_clocks)

@@ -1,4 +1,4 @@
-// What a DRAM channel counts: commands, queueing, and what each of its clocks went into.
+// The statistics of a DRAM channel: commands, queueing, and what each of its clocks went into.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace glint::mem {
 
-// What a command clock went into: each has exactly one, the first that applies. GPGPU-Sim's split of the
-// bandwidth has `turnaround` inside `column_wait` and no refresh.
+// What a command clock went into; each clock has exactly one reason, the first that applies. GPGPU-Sim's
+// split of the bandwidth counts `turnaround` as `column_wait` and has no refresh.
 enum class DramUse : uint8_t {
   Data,        // the data bus was in use
   Turnaround,  // every bank with its row open waits for the bus to turn between reading and writing
@@ -27,7 +27,7 @@ constexpr std::string_view name_of(DramUse use) {
 }
 
 struct DramStats {
-  // `bytes_per_clock`: of the data bus.
+  // `bytes_per_clock` is the width of the data bus.
   DramStats(stats::Group* parent, double bytes_per_clock)
       : group(parent, "dram"),
         activates_per_kb(
@@ -37,50 +37,55 @@ struct DramStats {
                          ? double(activates.value()) * 1000 / (double(busy_clocks.value()) * bytes_per_clock)
                          : 0.0;
             },
-            "Rows opened for each 1000 bytes of data.") {}
+            "Number of rows opened for each 1000 bytes of data.") {}
   stats::Group group;
-  stats::Counter reads{&group, "reads", "request", "Read requests whose column command was issued."};
-  stats::Counter writes{&group, "writes", "request", "Write requests whose column command was issued."};
-  stats::Counter activates{&group, "activates", "command", "Rows opened."};
-  stats::Counter precharges{&group, "precharges", "command", "Rows closed to open another."};
-  stats::Counter refreshes{&group, "refreshes", "command", "Refresh commands, of all banks or of one."};
+  stats::Counter reads{&group, "reads", "request",
+                       "Number of read requests whose column command was issued."};
+  stats::Counter writes{&group, "writes", "request",
+                        "Number of write requests whose column command was issued."};
+  stats::Counter activates{&group, "activates", "command", "Number of rows opened."};
+  stats::Counter precharges{&group, "precharges", "command", "Number of rows closed to open another."};
+  stats::Counter refreshes{&group, "refreshes", "command",
+                           "Number of refresh commands, for all banks or for one."};
   stats::Counter reopened{&group, "reopened", "command",
-                          "Rows that a refresh closed under a request, and that were opened again."};
+                          "Number of rows that a refresh closed under a request and that were opened again."};
   stats::Counter row_hits{&group, "row_hits", "request",
-                          "Requests whose row was open when their bank took them."};
+                          "Number of requests whose row was open when their bank took them."};
   stats::Counter turnarounds{&group, "turnarounds", "command",
-                             "Changes of the data bus between reading and writing."};
-  stats::Counter picks{&group, "picks", "request", "Requests that a bank has taken from the scheduler."};
-  stats::Counter clocks{&group, "clocks", "clock", "Command clocks simulated."};
-  stats::Counter busy_clocks{&group, "busy_clocks", "clock", "Command clocks of data transferred."};
+                             "Number of changes of the data bus between reading and writing."};
+  stats::Counter picks{&group, "picks", "request",
+                       "Number of requests that a bank has taken from the scheduler."};
+  stats::Counter clocks{&group, "clocks", "clock", "Number of command clocks simulated."};
+  stats::Counter busy_clocks{&group, "busy_clocks", "clock", "Number of command clocks in which data moved."};
   stats::Counter active_clocks{&group, "active_clocks", "clock",
-                               "Command clocks in which a bank held a request or a timer ran."};
+                               "Number of command clocks in which a bank held a request or a timer ran."};
   stats::Counter bank_clocks{&group, "bank_clocks", "clock",
-                             "Sum over banks of the command clocks in which they held a request."};
+                             "Sum over banks of the command clocks in which the bank held a request."};
   stats::Counter any_bank_clocks{&group, "any_bank_clocks", "clock",
-                                 "Command clocks in which at least one bank held a request."};
+                                 "Number of command clocks in which at least one bank held a request."};
   stats::Counter queue_clocks{&group, "queue_clocks", "clock",
                               "Sum over requests of the clocks from the queue to the column command."};
-  stats::Breakdown<DramUse> use{&group, "use", "clock", "What each command clock went into."};
+  stats::Breakdown<DramUse> use{&group, "use", "clock", "Number of command clocks, by what they went into."};
   stats::Histogram queue_latency{&group, "queue_latency", "clock", stats::linear(0, 1024, 16),
-                                 "From the queue to the column command."};
-  stats::Counter requests{&group, "requests", "request", "Requests taken into the queue."};
-  // The definitions of GPGPU-Sim (dram.cc, dram_sched.cc), so that numbers compare: bw_util, dram_eff, row
-  // buffer locality as the scheduler picks, and bank-level parallelism.
+                                 "Clocks from the queue to the column command of a request."};
+  stats::Counter requests{&group, "requests", "request", "Number of requests taken into the queue."};
+  // These have the definitions of GPGPU-Sim (dram.cc, dram_sched.cc), so that numbers can be compared:
+  // bw_util, dram_eff, row buffer locality as the scheduler picks, and bank-level parallelism.
   stats::Ratio utilisation{&group,      "utilisation", "ratio",
                            busy_clocks, clocks,        "Share of all clocks that carried data."};
   stats::Ratio efficiency{&group,      "efficiency",  "ratio",
                           busy_clocks, active_clocks, "Share of the active clocks that carried data."};
   stats::Ratio row_buffer_locality{
       &group, "row_buffer_locality", "ratio", row_hits, picks, "Share of picks that hit the open row."};
-  stats::Ratio bank_parallelism{&group,      "bank_parallelism", "bank",
-                                bank_clocks, any_bank_clocks,    "Banks at work while any was."};
+  stats::Ratio bank_parallelism{&group,          "bank_parallelism",
+                                "bank",          bank_clocks,
+                                any_bank_clocks, "Mean number of banks that held a request while any did."};
   stats::Ratio mean_queue_latency{&group,  "mean_queue_latency",
                                   "clock", queue_clocks,
-                                  picks,   "Mean time of a request from the queue to its column command."};
-  stats::Value p99_queue_latency{
-      &group, "p99_queue_latency", "clock", [this] { return p99(); },
-      "99 of 100 requests took no longer from the queue to the column command: the upper end of their bin."};
+                                  picks,   "Mean clocks from the queue to the column command of a request."};
+  stats::Value p99_queue_latency{&group, "p99_queue_latency", "clock", [this] { return p99(); },
+                                 "Clocks from the queue to the column command that 99 % of requests did not "
+                                 "exceed: the upper end of the bin."};
   stats::Value activates_per_kb;
 
  private:

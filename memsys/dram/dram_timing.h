@@ -1,4 +1,4 @@
-// DRAM times in command clocks.
+// The times of a DRAM channel in command clocks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace glint::mem {
 struct DramTiming {
   DramClock rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l;
   DramClock data;      // data-bus clocks of one request: a sector, or an atom where that is larger
-  DramClock rtw;       // read command to write command: the bus turns around between their data
-  DramClock activate;  // of the command bus
-  DramClock refresh_interval = kNever;  // from one refresh command to the next; kNever: none
-  DramClock refresh_time = 0;           // from it until its banks can open rows again
+  DramClock rtw;       // from read command to write command: the bus turns around between their data
+  DramClock activate;  // clocks of the command bus that an activate takes
+  DramClock refresh_interval = kNever;  // from one refresh command to the next; kNever: there is no refresh
+  DramClock refresh_time = 0;           // from a refresh command until its banks can open rows again
   bool refresh_per_bank = false;
 
   explicit DramTiming(const DramParams& p) {
@@ -28,7 +28,7 @@ struct DramTiming {
     cl = clocks(p.cl), wl = clocks(p.wl), wr = clocks(p.wr), rtp = clocks(p.rtp);
     rrd_s = clocks(p.rrd_s), rrd_l = clocks(p.rrd_l), faw = clocks(p.faw), wtr_s = clocks(p.wtr_s),
     wtr_l = clocks(p.wtr_l);
-    // Model: where an atom is smaller than a sector the sector's column commands go out back to back as one.
+    // Model: where an atom is smaller than a sector, the sector's column commands go out in a row, as one.
     const DramClock bursts = p.atom_bytes() < kSectorBytes ? kSectorBytes / p.atom_bytes() : 1;
     const DramClock burst = p.burst / p.transfers_per_clock;
     data = bursts * burst;
@@ -39,7 +39,7 @@ struct DramTiming {
     if (p.refresh == "none") return;
     refresh_per_bank = p.refresh == "per_bank";
     refresh_time = clocks(refresh_per_bank ? p.rfc_bank : p.rfc);
-    // A longest time, so rounded down; one bank after another, each has its turn once in that time.
+    // tREFI is the longest time allowed, so it is rounded down. Banks that take turns share it.
     const double interval = refresh_per_bank ? p.refi / p.banks : p.refi;
     refresh_interval = std::max<DramClock>(1, DramClock(std::floor(interval * p.clock_mhz / 1000.0 + 1e-6)));
   }

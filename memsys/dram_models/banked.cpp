@@ -12,7 +12,7 @@ class Banked final : public DramChannel {
  public:
   static constexpr const char* kName = "banked";
   static constexpr const char* kDoc =
-      "Banks, rows, command timing and refresh; `memory.dram.scheduler` orders the requests.";
+      "Banks, rows, command timing and refresh are modelled; `memory.dram.scheduler` orders the requests.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -1,4 +1,4 @@
-// Policy: one latency and one bandwidth, in order of arrival: no banks, rows, turnarounds or refresh.
+// DRAM model `simple`: one latency and one bandwidth, in order of arrival, without banks, rows or refresh.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -10,29 +10,29 @@
 namespace glint::mem {
 namespace {
 
-// A request is on the data bus when those before it have left, data_clocks / efficiency after them; a read's
-// data has come `latency` after that begins and its own transfer. Model: a place in the queue is free when
-// its transfer begins, as with banks when the column command goes out.
+// Requests follow each other on the data bus, one every data_clocks / efficiency clocks. The data of a read
+// have come `latency` and its own transfer after its turn begins. Model: an entry of the queue is free when
+// the transfer begins, as an entry of `banked` is when the column command goes out.
 class Simple final : public DramModel {
  public:
   static constexpr const char* kName = "simple";
   static constexpr const char* kDoc =
-      "A fixed latency and a share of the peak bandwidth, first come, first served: for fast sweeps.";
+      "A fixed latency and a share of the peak bandwidth, first come, first served; for fast sweeps.";
   struct Params {
     double latency = 29.1;    // tRCD + CL of GDDR6-14000: a closed row
-    double efficiency = 0.9;  // Choice: what refresh and turnarounds leave of streams, about
+    double efficiency = 0.9;  // Choice: about what refresh and turnarounds leave to streams
     static constexpr auto params() {
       return std::tuple{param(&Params::latency, "latency", "ns",
-                              "From the beginning of a read's service to its first data.", 0.0, 1e5),
+                              "Time from the beginning of a read's service to its first data.", 0.0, 1e5),
                         param(&Params::efficiency, "efficiency", "ratio",
-                              "Share of the data bus's peak bandwidth that can be had.", 0.01, 1.0)};
+                              "Share of the data bus's peak bandwidth that requests can use.", 0.01, 1.0)};
     }
   };
 
   Simple(const Params& params, const Context& context)
       : DramModel(context, DramTiming(context.params).data),
         latency_(DramClock(std::ceil(params.latency * context.params.clock_mhz / 1000.0 - 1e-6))),
-        // Parts of a clock: 2^10 of them, so that any efficiency is met in the long run.
+        // The distance is in parts of a clock, 2^10 to each, so that any efficiency is met in the long run.
         spacing_(
             std::max<DramClock>(data_clocks_ << kFraction,
                                 DramClock(std::ceil(double(data_clocks_ << kFraction) / params.efficiency)))),
@@ -84,7 +84,7 @@ class Simple final : public DramModel {
     returns_.push({clocks_.cycle_after(request.start + latency_ + data_clocks_), request.line,
                    request.sectors, clocks_.cycle_after(request.start)});
   }
-  // Attributes the clocks up to `until`; after the data, requests wait or nobody does.
+  // Attributes the clocks up to `until`. `waiting` says whether a request waited in those without data.
   void account(DramClock until, bool waiting) {
     if (until <= accounted_) return;
     const DramClock data = std::clamp(data_until_, accounted_, until) - accounted_;

@@ -1,4 +1,4 @@
-// Policy: strictly in order of arrival over all banks (FCFS): the baseline that FR-FCFS is measured against.
+// DRAM scheduler `fcfs`: requests go in order of arrival over all banks, the baseline for FR-FCFS.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 #include <vector>
@@ -9,12 +9,12 @@
 namespace glint::mem {
 namespace {
 
-// A bank gets a request only when that is the oldest of all; a busy bank holds up the others behind it.
+// A bank gets a request only when that request is the oldest of all, so a busy bank holds up the others.
 class Fcfs final : public DramScheduler {
  public:
   static constexpr const char* kName = "fcfs";
   static constexpr const char* kDoc =
-      "The oldest request of the channel; younger ones wait even when their banks are free.";
+      "The oldest request of the channel goes first; younger ones wait even when their banks are free.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -1,4 +1,4 @@
-// Policy: row hits first, then the oldest (FR-FCFS; Rixner et al., ISCA 2000).
+// DRAM scheduler `frfcfs`: row hits go first, then the oldest request (FR-FCFS; Rixner et al., ISCA 2000).
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 #include <vector>
@@ -9,18 +9,20 @@
 namespace glint::mem {
 namespace {
 
-// Each bank has a list of its requests, oldest first. Without a cap a stream of row hits can starve a row
+// Each bank has a list of its requests, oldest first. Without a cap, a stream of row hits can starve a row
 // miss for as long as the stream lasts, as in GPGPU-Sim.
 class FrFcfs final : public DramScheduler {
  public:
   static constexpr const char* kName = "frfcfs";
-  static constexpr const char* kDoc = "A request to the open row first, then the oldest of the bank.";
+  static constexpr const char* kDoc =
+      "A bank takes a request to its open row first, then its oldest request.";
   struct Params {
     uint32_t hit_cap = 0;
     static constexpr auto params() {
-      return std::tuple{param(&Params::hit_cap, "hit_cap", "request",
-                              "Row hits that may overtake the oldest request in a row; 0 is no limit.", 0,
-                              1 << 16)};
+      return std::tuple{
+          param(&Params::hit_cap, "hit_cap", "request",
+                "Number of row hits in a row that may overtake the oldest request of a bank. 0: no limit.", 0,
+                1 << 16)};
     }
   };
 

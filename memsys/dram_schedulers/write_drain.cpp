@@ -1,5 +1,5 @@
-// Policy: FR-FCFS that keeps writes back and drains many of them at once, so that the data bus turns less
-// often.
+// DRAM scheduler `write_drain`: FR-FCFS holds writes back and drains many at once, so that the data bus turns
+// less often.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <tuple>
@@ -11,23 +11,27 @@
 namespace glint::mem {
 namespace {
 
-// Writes are served from when `high` of them wait until `low` are left, and while there is no read. Within
-// reads and within writes: row hits first, then the oldest (as GPGPU-Sim's write queue with its two
-// watermarks).
+// A drain serves writes; it begins when `high` writes wait and ends when `low` are left. Writes are also
+// served while there is no read. Among reads and among writes, row hits go first, then the oldest, as in
+// GPGPU-Sim's write queue with its two watermarks.
 class WriteDrain final : public DramScheduler {
  public:
   static constexpr const char* kName = "write_drain";
   static constexpr const char* kDoc =
-      "FR-FCFS on reads; writes wait until enough of them can be drained in a row.";
+      "FR-FCFS serves reads; writes wait until enough of them can be drained in a row.";
   struct Params {
     uint32_t high = 32;
     uint32_t low = 16;
     static constexpr auto params() {
       return std::tuple{
-          param(&Params::high, "high", "request",
-                "Writes at which the drain begins; more than half of the queue: half.", 1, 1 << 16),
-          param(&Params::low, "low", "request", "Writes at which it ends; `high` or more: one less.", 0,
-                1 << 16)};
+          param(
+              &Params::high, "high", "request",
+              "Number of waiting writes at which a drain begins. More than half of the queue counts as half.",
+              1, 1 << 16),
+          param(&Params::low, "low", "request",
+                "Number of waiting writes at which a drain ends. A number of `high` or more counts as `high` "
+                "- 1.",
+                0, 1 << 16)};
     }
   };
 

@@ -1,4 +1,4 @@
-// Timestamped messages from several cells to one: the inbound side of a crossbar port.
+// A channel of timestamped messages from several cells to one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -10,9 +10,8 @@
 
 namespace glint::mem {
 
-// A Channel (engine/engine.h) with one outbox a producer. The consumer sees all messages in order of
-// (arrival, producer, sending order): the order depends on nothing but the messages, so neither the window
-// nor the threads change it.
+// Each producer has an outbox of its own. The consumer sees all messages in order of (arrival, producer,
+// sending order). This order depends on nothing but the messages, so neither windows nor threads change it.
 template <class Message>
 class FanIn final : public ChannelBase {
  public:
@@ -39,7 +38,7 @@ class FanIn final : public ChannelBase {
     if (head_ == inbox_.size()) {
       inbox_.clear();
       head_ = 0;
-    } else if (head_ > kCompact && head_ > inbox_.size() / 2) {  // amortised: a busy inbox never runs empty
+    } else if (head_ > kCompact && head_ > inbox_.size() / 2) {  // a busy inbox may never run empty
       inbox_.erase(inbox_.begin(), inbox_.begin() + ptrdiff_t(head_));
       head_ = 0;
     }
@@ -69,7 +68,7 @@ class FanIn final : public ChannelBase {
     std::vector<Timed> sent;
   };
 
-  // Insertion from the back: messages of one window lie close together in time.
+  // Inserts from the back, because the messages of one window lie close together in time.
   void insert(const Timed& timed) {
     inbox_.push_back(timed);
     size_t i = inbox_.size() - 1;

@@ -66,8 +66,8 @@ struct Grid {
 };
 
 // The grid's routers for packets, or those for replies, with the channels to and from the ports. A message
-// moves when its link is free and the next buffer has a place for all of it (virtual cut-through). Of several
-// inputs with a message for one output, the next in turn goes. A place is free again for the router before
+// moves when its link is free and the next buffer has an entry for it (virtual cut-through). Of several
+// inputs with a message for one output, the next in turn goes. An entry is free again for the router before
 // when the message's tail has left and `hop_latency` has passed.
 template <class Message>
 class Plane final : public Cell {
@@ -125,11 +125,11 @@ class Plane final : public Cell {
     Message message;
   };
   struct Input {
-    explicit Input(uint32_t places) : queue(places), freed(places) {}
+    explicit Input(uint32_t entries) : queue(entries), freed(entries) {}
     Ring<Held> queue;
     Cycle free_at = 0;   // the last message has left
-    uint32_t taken = 0;  // places, as the router before knows
-    Ring<Cycle> freed;   // when it will know of places that are free again
+    uint32_t taken = 0;  // entries in use, as far as the router before knows
+    Ring<Cycle> freed;   // when it will know of entries that are free again
   };
   struct Output {
     Cycle free_at = 0;
@@ -157,7 +157,7 @@ class Plane final : public Cell {
   }
 
   // Sends what can leave the router. No other router's part in the same cycle changes what it sends: a
-  // message that arrives is ready later, and the news of a free place comes later.
+  // message that arrives is ready later, and the news of a free entry comes later.
   void route(uint32_t index, Cycle now) {
     Router& router = routers_[index];
     std::array<uint32_t, NumSides> wanted{};  // by output: bits of the inputs that want it
@@ -238,7 +238,7 @@ class Plane final : public Cell {
 };
 
 // Model: replies wait for the grid in front of their router without limit; a slice takes few enough packets.
-// Model: the routers' places are counted in messages of any size.
+// Model: an entry of a buffer holds one message of any size.
 class Mesh final : public Network {
  public:
   static constexpr const char* kName = "mesh";

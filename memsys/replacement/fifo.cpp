@@ -10,7 +10,7 @@
 namespace glint::mem {
 namespace {
 
-// A line that loses its last sector keeps its place in the order.
+// A line that loses its last sector keeps its position in the order.
 class Fifo final : public Replacement {
  public:
   static constexpr const char* kName = "fifo";

@@ -1,4 +1,4 @@
-// The contract of Network, for every registered one, and what is particular to each.
+// The contract of Network, for every registered one, and the times and limits of each.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/network.h"
 
@@ -70,7 +70,7 @@ class Rig {
     for (uint16_t s = 0; s < slices; ++s) slices_.push_back({network_->slice_port(s), Moods(1000 + s, 2)});
   }
 
-  // How the users behave: cores send `packets` each, to any slice or to slice `only`.
+  // Each core sends `packets`, to any slice or to slice `only`.
   uint32_t packets = 300;
   int only = -1;
   bool slices_take = true, cores_take = true;
@@ -105,7 +105,7 @@ class Rig {
     for (const Core& core : cores_) sum += core.sent;
     return sum;
   }
-  // Of all slices, or of all cores, one after another.
+  // Returns what all slices, or all cores, have taken, one after another.
   std::vector<Taken> packets_taken() const {
     std::vector<Taken> out;
     for (const Slice& slice : slices_) out.insert(out.end(), slice.taken.begin(), slice.taken.end());
@@ -172,7 +172,7 @@ class Rig {
   Cycle now_ = 0;
 };
 
-// Lines from one source to one destination grow: they were sent in this order.
+// Checks that lines from one source to one destination grow, because they were sent in this order.
 void check_order(const std::vector<Taken>& taken) {
   std::map<std::pair<uint16_t, uint16_t>, Address> last;
   for (const Taken& t : taken) {
@@ -306,7 +306,7 @@ TEST_CASE("the crossbar holds as many packets of a core for a slice as the core 
   }
 }
 
-TEST_CASE("the mesh holds as many packets as its buffers on the way have places") {
+TEST_CASE("the mesh holds as many packets as its buffers on the way have entries") {
   Rig rig(chosen("mesh", "entry_buffer = 3\nbuffer = 2\nexit_buffer = 4\n"), 1, 1, {});
   rig.slices_take = false;
   rig.run_until(5'000);
@@ -315,7 +315,7 @@ TEST_CASE("the mesh holds as many packets as its buffers on the way have places"
 
 TEST_CASE("an unloaded packet crosses the mesh in the time of its hops, its two ports and its links") {
   NocParams params;
-  constexpr int kCores[] = {0, 2, 4, 6}, kSlices[] = {1, 3, 5, 7, 8};  // places in three rows of three
+  constexpr int kCores[] = {0, 2, 4, 6}, kSlices[] = {1, 3, 5, 7, 8};  // routers, in three rows of three
   for (uint16_t core = 0; core < 4; ++core)
     for (uint16_t slice = 0; slice < 5; ++slice) {
       const auto network = chosen("mesh", "hop_latency = 5\nport_latency = 9\n").make({params, 4, 5});
