@@ -89,9 +89,9 @@ struct RenderResult {
 };
 
 // Runs the launch of a world on either machine. The result has everything except pictures, structures and
-// warnings. With `no_skip`, `threads` threads of the host step through every cycle (HostOptions). `progress`
-// hears how many of the launch's warps have ended, and `observe` says what else to note of a timing run.
-// Throws as render() does.
+// warnings. The timing machine runs on `threads` threads of the host, and with `no_skip` it simulates every
+// cycle (HostOptions). `progress` hears how many of the launch's warps have ended, and `observe` says what
+// else to note of a timing run. Throws as render() does.
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
                        uint32_t threads, const std::function<void(uint64_t done, uint64_t total)>& progress,
                        const Observation& observe = {});

@@ -1,4 +1,4 @@
-// The one file that includes CLI11, whose header takes seconds to compile.
+// Parses the command line. This is the only file that includes CLI11, whose header takes seconds to compile.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/command_line.h"
 
