@@ -147,7 +147,7 @@ TEST_CASE("strides of the number of partitions still reach every partition") {
   for (const int n : count) CHECK(n > 60);  // 100 on average
 }
 
-TEST_CASE("a line that is held is no victim, and a set of such lines has none") {
+TEST_CASE("a line that is held is not a victim, and a set of such lines has none") {
   TagArray tags({1, 2, 128}, "lru");
   tags.insert(0).held = true;
   tags.insert(128).valid = 1;

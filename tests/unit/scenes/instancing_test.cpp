@@ -68,7 +68,7 @@ TEST_CASE("a flat body is moved with its normal, a line is not moved at all") {
   CHECK_FALSE(affine_between(line, moved(line, kMatrix)));
 }
 
-TEST_CASE("a copy with a corner off by a thousandth, or with its own normals, is no copy") {
+TEST_CASE("a copy with a corner off by a thousandth, or with its own normals, is not a copy") {
   Model more = pyramid();  // has a fifth vertex, because four can always be moved onto four others
   add_vertex(more, {1, 1, 1}, {0, 0, 1}, 0);
   Model bent = moved(more, kMatrix);
