@@ -1,6 +1,6 @@
 # Tests that no policy changes the picture, that each costs the cycles that policies.csv records, and that a policy can live outside of the tree.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: policy_test.py GLINT SOURCE_DIR [Table|Plugin|NewPolicy]
+"""usage: policy_test.py GLINT SOURCE_DIR [Table|Frames|Plugin|NewPolicy]
 
 policies.csv has one row for each policy: its key, its name, and the cycles of one small frame with it. An empty number means
 "not recorded yet": tools/new_policy.py writes such a row, and tools/update_golden.py fills it in."""
@@ -18,6 +18,7 @@ import glint_case
 from glint_case import GLINT, ROOT, GlintTest
 
 sys.path.insert(0, str(ROOT / "tools"))
+import frame_table  # noqa: E402
 import policy_table  # noqa: E402
 
 YOUNGEST = (ROOT / "docs/howto/policy.md").read_text().split("```cpp\n")[1].split("```")[0]
@@ -34,6 +35,15 @@ class Table(GlintTest):
                 self.assertEqual(str(cycles), recorded[key, name], "tools/update_golden.py records a number anew")
                 pictures.setdefault(picture, f"{key}={name}")
         self.assertEqual(len(pictures), 1, f"these give pictures of their own: {list(pictures.values())}")
+
+
+class Frames(GlintTest):
+    def test_statistics_and_pictures_are_the_bytes_that_every_distribution_gives(self):
+        for row in csv.DictReader((ROOT / frame_table.PATH).read_text().splitlines()):
+            for threads in ("1", "3"):
+                with self.subTest(workload=row["workload"], threads=threads):
+                    self.assertEqual(frame_table.measure(GLINT, row["workload"], self.folder / "out", "--threads", threads), [row["statistics"], row["picture"]],
+                                     "a change of the model moves them: tools/update_golden.py records them anew")
 
 
 class Plugin(GlintTest):

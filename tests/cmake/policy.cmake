@@ -1,7 +1,7 @@
-# Every policy, from the command: its cycles, and policies that are built outside of the tree.
+# Every policy, from the command: its cycles, the bytes of two frames, and policies that are built outside of the tree.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
-  foreach(suite Table Plugin NewPolicy)
+  foreach(suite Table Frames Plugin NewPolicy)
     add_test(NAME cli_Policy${suite} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/policy_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
 endif()
