@@ -61,7 +61,7 @@ class Statistics(GlintTest):
     def test_describe_explains_statistics_with_or_without_an_instance_and_a_part(self):
         for name in ("gpu.core[*].issue_slots", "gpu.core[12].issue_slots", "gpu.core[0].issue_slots::raw_fixed"):
             done = self.expect(0, [], "describe", name)
-            self.assertEqual(done.stdout.splitlines(), ["gpu.core[*].issue_slots", "  Every cycle of every scheduler, by what it was spent on.", "  unit   cycle"])
+            self.assertEqual(done.stdout.splitlines(), ["gpu.core[*].issue_slots", "  Cycles of all schedulers, by what each was spent on.", "  unit   cycle"])
 
     def test_describe_explains_every_statistic_that_is_listed(self):
         names = [line.split()[0] for line in self.glint("list", "stats").stdout.splitlines()]
