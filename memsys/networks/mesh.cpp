@@ -36,7 +36,9 @@ struct MeshParams {
         param(&MeshParams::link_bytes, "link_bytes", "byte/cycle",
               "Width of the links between routers, and between a router and its port.", 1, 4096),
         param(&MeshParams::buffer, "buffer", "message",
-              "Number of messages that each input of a router can hold from each neighbour.", 1, 1 << 12),
+              "Number of messages that an input of a router can hold. A router has one input for each "
+              "neighbour.",
+              1, 1 << 12),
         param(&MeshParams::port_latency, "port_latency", "cycle",
               "Cycles from a core's or slice's port to its router, and from the router to the port.", 1,
               10000),
