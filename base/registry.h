@@ -33,6 +33,9 @@ struct PolicyChoice {
   // The constructor is implicit, so that a default value is written as a name.
   PolicyChoice(const char* default_name) : name(default_name) {}  // NOLINT
   std::unique_ptr<Interface> make(typename Interface::Context context) const;
+  // Returns true when the policy declares `static constexpr bool kInIntervalModel = true`: the interval model
+  // (pipeline/interval) computes what this policy does.
+  bool is_in_interval_model() const;
 };
 
 template <class Interface>
@@ -44,6 +47,7 @@ class Registry {
     void (*read)(ConfigTable&, PolicyChoice<Interface>&);
     std::vector<ParamInfo> (*defaults)();
     std::unique_ptr<Interface> (*make_default)(typename Interface::Context);
+    bool is_in_interval_model;
   };
   // The object is local to the function, so it exists before the first static object registers a policy.
   static Registry& instance() {
@@ -85,6 +89,11 @@ std::unique_ptr<Interface> PolicyChoice<Interface>::make(typename Interface::Con
   return maker ? maker(context) : Registry<Interface>::instance().entry(name).make_default(context);
 }
 
+template <class Interface>
+bool PolicyChoice<Interface>::is_in_interval_model() const {
+  return Registry<Interface>::instance().entry(name).is_in_interval_model;
+}
+
 template <class Interface, class Impl>
 struct Register {
   using Params = typename Impl::Params;
@@ -103,7 +112,8 @@ struct Register {
          [] { return describe_params(Params{}); },
          [](typename Interface::Context context) -> std::unique_ptr<Interface> {
            return std::make_unique<Impl>(Params{}, context);
-         }});
+         },
+         requires { requires Impl::kInIntervalModel; }});
   }
 };
 

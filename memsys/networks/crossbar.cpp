@@ -18,6 +18,7 @@ class Crossbar final : public Network {
  public:
   static constexpr const char* kName = "crossbar";
   static constexpr const char* kDoc = "A switch that never blocks; ports and credits limit the traffic.";
+  static constexpr bool kInIntervalModel = true;
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -26,12 +26,6 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
   const std::pair<bool, std::string_view> unknown[] = {
       {world.block_size[0] != 0, "launches with blocks of threads"},
       {rt.unit != rt::kHardware, "rays that code walks (rt.unit = \"software\")"},
-      {rt.any_hit.name != "immediate",
-       "any-hit shaders that run later (rt.any_hit other than \"immediate\")"},
-      {rt.scheduler.name != "oldest_first", "rt.scheduler other than \"oldest_first\""},
-      {rt.coalescing.name != "within_warp", "rt.coalescing other than \"within_warp\""},
-      {rt.stack.name != "full", "stacks that leave the RT unit (rt.stack other than \"full\")"},
-      {params.memory.noc.topology.name != "crossbar", "memory.noc.topology other than \"crossbar\""},
       {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
            rt.shortcuts.store_each_hit,
        "rt.result_store and the accesses of rt.shortcuts"},
@@ -40,6 +34,15 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
   std::string message;
   for (const auto& [is_there, what] : unknown)
     if (is_there) message += fmt::format("the interval model does not know {}\n", what);
+  const auto check_policy = [&message](std::string_view key, const auto& choice) {
+    if (!choice.is_in_interval_model())
+      message += fmt::format("the interval model does not know {} = \"{}\"\n", key, choice.name);
+  };
+  check_policy("rt.any_hit", rt.any_hit);
+  check_policy("rt.scheduler", rt.scheduler);
+  check_policy("rt.coalescing", rt.coalescing);
+  check_policy("rt.stack", rt.stack);
+  check_policy("memory.noc.topology", params.memory.noc.topology);
   if (!message.empty())
     throw UnsupportedError(message + "  note: `glint model --statistics-only` leaves it out");
   return world;

@@ -14,6 +14,7 @@ class Immediate final : public AnyHitMode {
  public:
   static constexpr std::string_view kName = "immediate";
   static constexpr std::string_view kDoc = "A ray stops at each candidate until its shader has run.";
+  static constexpr bool kInIntervalModel = true;
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -13,6 +13,7 @@ class WithinWarp final : public Coalescer {
  public:
   static constexpr std::string_view kName = "within_warp";
   static constexpr std::string_view kDoc = "Lanes of one warp that want the same node share a fetch.";
+  static constexpr bool kInIntervalModel = true;
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

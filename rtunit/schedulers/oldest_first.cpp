@@ -13,6 +13,7 @@ class OldestFirst final : public RayScheduler {
  public:
   static constexpr std::string_view kName = "oldest_first";
   static constexpr std::string_view kDoc = "The warp that has been in the unit longest sends first.";
+  static constexpr bool kInIntervalModel = true;
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };
