@@ -50,7 +50,7 @@ struct MeshParams {
   }
 };
 
-// The routers in rows of `width`. Each has at most one port.
+// The routers stand in rows of `width`, and each serves at most one port.
 struct Grid {
   uint32_t width = 1, routers = 1;
   std::vector<uint32_t> cores, slices;  // the router of each
@@ -67,14 +67,15 @@ struct Grid {
   }
 };
 
-// The grid's routers for packets, or those for replies, with the channels to and from the ports. A message
-// moves when its link is free and the next buffer has an entry for it (virtual cut-through). Of several
-// inputs with a message for one output, the next in turn goes. An entry is free again for the router before
-// when the message's tail has left and `hop_latency` has passed.
+// A plane has the routers for packets, or those for replies, and the channels to and from the ports. A
+// message moves when its link is free and the next buffer has an entry for it (virtual cut-through). Of
+// several inputs with a message for one output, the next in turn sends. An entry is free again for the router
+// before when the message's tail has left and `hop_latency` has passed.
 template <class Message>
 class Plane final : public Cell {
  public:
-  // `from` and `to`: the routers of the sources and of the destinations. `is_bounded`: sources need credits.
+  // `from` and `to` name the routers of the sources and of the destinations. `is_bounded` says that sources
+  // need credits.
   Plane(const MeshParams& params, const Grid& grid, const std::vector<uint32_t>& from,
         const std::vector<uint32_t>& to, bool is_bounded)
       : params_(params),
@@ -239,7 +240,7 @@ class Plane final : public Cell {
   uint64_t held_ = 0, moves_ = 0;
 };
 
-// Model: replies wait for the grid in front of their router without limit; a slice takes few enough packets.
+// Model: replies wait in front of the grid without limit, because the packets that a slice takes bound them.
 // Model: an entry of a buffer holds one message of any size.
 class Mesh final : public Network {
  public:
