@@ -86,7 +86,7 @@ struct CoreStats : stats::Group {
                                 "Number of atomic warp instructions on global memory."};
   stats::Counter barriers{this, "barriers", "instruction",
                           "Number of times that a warp came to a barrier of its block."};
-  stats::Counter fences{this, "fences", "instruction", "Memory fences."};
+  stats::Counter fences{this, "fences", "instruction", "Number of memory fences."};
   stats::Counter constant_loads{this, "constant_loads", "instruction",
                                 "Number of warp instructions that load from the constant bank."};
   stats::Counter texture_fetches{this, "texture_fetches", "instruction",

@@ -125,7 +125,7 @@ constexpr Metric kRtUnit[] = {
     {"rt_writes", "request",
      "Number of write requests of the RT units, for results and tables of candidates.",
      "sum(rt.result_writes) + sum(rt.table_writes)", "Table 3"},
-    {"rt_store_q_max", "request", "Longest length of the store queue.", "", kNoStoreQueue},
+    {"rt_store_q_max", "request", "Largest number of requests in the store queue.", "", kNoStoreQueue},
     {"rt_store_cycles", "cycle", "Mean cycles of a store in the queue.", "", kNoStoreQueue},
     {"rt_op_intensity", "lane cycle/request", "Lane cycles in tests (intersection_stages) per read request.",
      "(sum(rt.internal_nodes) * config(rt.box.latency) + sum(rt.procedural_leaves) * config(rt.box.latency) "

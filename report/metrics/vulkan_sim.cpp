@@ -32,7 +32,7 @@ constexpr PeerStat kStats[] = {
      "The unit is GB/s. Headers are included."},
     {"gpgpu_n_tot_thrd_icount", "sum(core.lane_instructions)", ""},
     {"gpgpu_n_tot_w_icount", "sum(core.instructions)", ""},
-    {"gpgpu_n_stall_shd_mem", "sum(core.issue_slots::lsu_throttle)", "Schedulers' cycles."},
+    {"gpgpu_n_stall_shd_mem", "sum(core.issue_slots::lsu_throttle)", "It counts cycles of schedulers."},
     {"gpgpu_n_mem_read_local", "sum(l2.reads::shader_local)", "It counts requests that left the L1s."},
     {"gpgpu_n_mem_write_local", "sum(l2.writes::shader_local)", ""},
     {"gpgpu_n_mem_read_global",
