@@ -1,4 +1,4 @@
-// When intersection and any-hit shaders run: the interface of the any-hit modes.
+// Declares the interface of the policies that choose when intersection and any-hit shaders run.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The order in which a ray visits the children of a node: the interface of child orders.
+// Declares the interface of the policies that choose the order in which a ray visits the children of a node.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace glint::rt {
 
-// The children of one node that the ray enters, in index order.
+// Lists the children of one node that the ray enters, in index order.
 struct ChildHits {
   int count = 0;
   const float* t_enter = nullptr;

@@ -1,4 +1,4 @@
-// Which lanes share one fetch of a node: the interface of coalescing policies.
+// Declares the interface of the policies that choose which lanes share one fetch of a node.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

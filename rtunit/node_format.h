@@ -1,4 +1,4 @@
-// How internal nodes are written: the interface of node formats.
+// Declares the interface of the policies that choose how internal nodes are written.
 //
 // A format is one pair of files in rtunit/formats/. `<name>.cpp` encodes nodes and registers the format;
 // `<name>.h` holds a struct with kWidth, kNodeBytes and the static test() that traversal is compiled for
@@ -17,7 +17,7 @@
 
 namespace glint::rt {
 
-// A tree as the builder hands it over. Node 0 is the root and internal; leaves point to their bytes in
+// Holds a tree as the builder hands it over. Node 0 is the root and internal; leaves point to their bytes in
 // `leaf_bytes`.
 struct BuildTree {
   struct Node {
@@ -31,7 +31,7 @@ struct BuildTree {
   std::vector<std::byte> leaf_bytes;
 };
 
-// A child as found in encoded bytes. Validation and tools use it, the traversal does not.
+// Describes a child as found in encoded bytes. Validation and tools use it, the traversal does not.
 struct DecodedChild {
   NodeRef node = 0;
   Bounds bounds;  // as the traversal sees it

@@ -1,4 +1,4 @@
-// Tunables of an RT unit: warp buffer, request port, test pipelines.
+// Declares the parameters of an RT unit: warp buffer, request port, test pipelines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -18,7 +18,8 @@
 
 namespace glint::rt {
 
-// A pipeline that tests nodes. In each `interval` it starts `units` tests; each is done after `latency`.
+// Describes a pipeline that tests nodes. In each `interval` it starts `units` tests; each is done after
+// `latency`.
 struct PipelineParams {
   uint32_t latency = 1, interval = 1, units = 1;
   static constexpr auto params() {
@@ -31,7 +32,7 @@ struct PipelineParams {
   }
 };
 
-// The names of who walks rays.
+// These are the values of rt.unit, which says who walks rays.
 inline constexpr std::string_view kHardware = "hardware", kSoftware = "software";
 inline std::vector<std::string> unit_names() {
   return {std::string(kHardware), std::string(kSoftware)};

@@ -1,4 +1,4 @@
-// Which resident warp of the RT unit sends a node request: the interface of scheduling policies.
+// Declares the interface of the policies that choose which warp of the RT unit sends a node request.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace glint::rt {
 
-// What a policy may know of a warp in the unit. The slots of the warp buffer follow each other in the span.
+// Holds what a policy may know of a warp in the unit. The slots of the warp buffer follow each other in the
+// span.
 struct WarpView {
   bool ready = false;  // Some lane wants a node.
   uint32_t lanes_wanting = 0;

@@ -1,5 +1,5 @@
-// The door between a core and its RT unit: warps go in with their rays and come out when all rays have
-// stopped.
+// Declares the door between a core and its RT unit: warps go in with their rays and come out when all rays
+// have stopped.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>

@@ -1,4 +1,4 @@
-// Where the entries of a ray's stack are kept and what that costs: the interface of stack models.
+// Declares the interface of the policies that choose where the entries of a ray's stack are kept.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace glint::rt {
 inline constexpr int kEntriesPerSector = 4;  // 32 B of StackEntry
 static_assert(kEntriesPerSector * sizeof(StackEntry) == 32);
 
-// What the RT unit has to do before the ray's next node. Row r of a stack in memory holds its entries 4r ..
-// 4r + 3.
+// Says what the RT unit has to do before the ray's next node. Row r of a stack in memory holds its entries 4r
+// .. 4r + 3.
 struct StackWork {
   uint16_t row = 0;  // The stack in memory ended here: spills go to this row and up, fills come from below.
   uint16_t spills = 0;    // sectors to write
@@ -21,8 +21,8 @@ struct StackWork {
   uint16_t replayed = 0;  // how many of these the lane has asked for
 };
 
-// Where stacks lie in memory. The layout is that of candidate tables (rtunit/traversal/candidate_table.h), so
-// that lanes share lines.
+// Says where stacks lie in memory. The layout is that of candidate tables
+// (rtunit/traversal/candidate_table.h), so that lanes share lines.
 struct StackLayout {
   Address base = 0;   // physical, of this core
   uint32_t rows = 0;  // sectors a ray; 0: stacks never leave the chip

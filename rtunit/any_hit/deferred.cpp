@@ -13,7 +13,7 @@
 namespace glint::rt {
 namespace {
 
-// The lanes of a warp that have candidates for one shader, and the nearest candidate of each.
+// Holds the lanes of a warp that have candidates for one shader, and the nearest candidate of each.
 struct Group {
   uint32_t shader = AnyHitMode::kNoShader;
   LaneMask lanes = 0;

@@ -1,4 +1,4 @@
-// Nodes with boxes in single precision and one reference for each child: what the formats without
+// Defines nodes with boxes in single precision and one reference for each child, which the formats without
 // quantisation share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

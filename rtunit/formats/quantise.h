@@ -1,5 +1,5 @@
-// Boxes in 8 bits a plane. On each axis a plane is a number of steps from an origin, and a step is a power of
-// two (Ylitie et al. 2017, section 3.1).
+// Writes boxes in 8 bits a plane. On each axis a plane is a number of steps from an origin, and a step is a
+// power of two (Ylitie et al. 2017, section 3.1).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>

@@ -1,4 +1,4 @@
-// Nodes with boxes in 8 bits a plane: the test, the planes and the decoding that formats of that kind share.
+// Tests, writes and decodes nodes with boxes in 8 bits a plane, for all formats of that kind.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>

@@ -1,4 +1,5 @@
-// A ray in the coordinates of the structure that it walks, and what the intersection tests derive from it.
+// Describes a ray in the coordinates of the structure that it walks, with what the intersection tests derive
+// from it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -6,7 +7,7 @@
 
 namespace glint::rt {
 
-// The space of the structure that is being walked: the world, or the object space of an instance.
+// The space is that of the structure being walked: the world, or the object space of an instance.
 struct RaySpace {
   std::array<float, 3> origin{}, direction{}, inverse_direction{};
   std::array<float, 3> shear{};          // Woop et al. 2013: Sx, Sy, Sz

@@ -1,4 +1,4 @@
-// When single stores of hits are sent and what waits for them.
+// Sends single stores of hits, and keeps their warps until the last store is acknowledged.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/shortcuts/hit_stores.h"
 

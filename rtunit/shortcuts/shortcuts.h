@@ -1,5 +1,5 @@
-// Switches that make the RT unit take the shortcuts of a published simulator, for comparisons with its
-// results.
+// Declares switches that make the RT unit take the shortcuts of a published simulator, for comparisons with
+// its results.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

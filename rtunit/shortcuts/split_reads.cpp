@@ -1,4 +1,4 @@
-// When a ray reads a header or a descriptor before its next node.
+// Decides when a ray reads a header or a descriptor before its next node.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/shortcuts/split_reads.h"
 

@@ -25,7 +25,7 @@ class SplitReads final : public WalkHook {
   void visited(const Visit& visit) override;
 
  private:
-  // Lanes of a slot whose next read is a header, and lanes whose leaf's descriptor has been read.
+  // Holds the lanes of a slot whose next read is a header, and those whose leaf's descriptor has been read.
   struct Lanes {
     LaneMask header = 0, described = 0;
   };

@@ -1,5 +1,5 @@
-// Stack model `restart_trail`: a short stack that forgets its oldest entries and finds them again from the
-// root.
+// Stack model `restart_trail`: a short stack forgets its oldest entries, and the ray finds them again from
+// the root.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,4 @@
-// Building acceleration structures in simulated memory from geometry, as a driver would.
+// Builds acceleration structures in simulated memory from geometry, as a driver would.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -42,7 +42,7 @@ struct Instance {
   uint32_t bottom = 0;                          // index of its bottom level
 };
 
-// The keys of [bvh] in a configuration.
+// Holds the keys of [bvh] in a configuration.
 struct BuildOptions {
   PolicyChoice<NodeFormat> format{"bvh6"};  // Vulkan-Sim 2.0
   bool pair_triangles = true;
@@ -67,8 +67,8 @@ struct StructureInfo {
   uint32_t stack_need = 0;  // stack entries that the worst ray needs, instances' bottom levels included
 };
 
-// A bottom level as bytes that may lie anywhere. They are all that is left of its geometry. `info.address` is
-// not set.
+// Holds a bottom level as bytes that may lie anywhere. They are all that is left of its geometry.
+// `info.address` is not set.
 struct EncodedBottom {
   StructureInfo info;
   std::vector<std::byte> bytes;

@@ -20,7 +20,7 @@ namespace {
 constexpr uint32_t kMaxWidth = 16;
 constexpr uint32_t kMaxDepth = 60;  // binary levels: the builder's own limit for skewed input
 
-// A node in the builder's memory: a leaf when `num_children` is 0.
+// Holds a node in the builder's memory. It is a leaf when `num_children` is 0.
 struct RawNode {
   uint32_t num_children = 0, item = 0;
   RawNode* child[kMaxWidth]{};

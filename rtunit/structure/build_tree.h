@@ -8,7 +8,7 @@
 
 namespace glint::rt {
 
-// A leaf to be placed: `leaf_block` and `kind` go into its BuildTree::Node.
+// Describes a leaf to be put into the tree: `leaf_block` and `kind` go into its BuildTree::Node.
 struct BuildItem {
   Bounds bounds;
   NodeKind kind = NodeKind::Triangle;

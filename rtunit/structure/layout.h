@@ -1,4 +1,4 @@
-// Where the nodes and leaves of a tree lie in a structure's bytes: what encodings have in common.
+// Decides where the nodes and leaves of a tree lie in a structure's bytes, for all encodings.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>

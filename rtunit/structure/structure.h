@@ -1,4 +1,4 @@
-// Acceleration structures as bytes: header, leaves and references that every node format shares.
+// Defines the bytes of acceleration structures that all node formats share: header, leaves and references.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -35,8 +35,8 @@ constexpr uint32_t leaf_bytes(NodeKind kind) {
   return kind == NodeKind::Instance ? 2 * kLeafBytes : kLeafBytes;
 }
 
-// The node formats that traversal is compiled for (rtunit/formats/). A header names its format; a bottom
-// level has that of the top level above it.
+// Names the node formats that the traversal is compiled for (rtunit/formats/). A header names its format; a
+// bottom level has that of the top level above it.
 enum class FormatId : uint8_t { Bvh6, Bvh2, Bvh4, Bvh8, Count };
 
 struct Bounds {
@@ -96,7 +96,7 @@ struct InstanceLeaf {
 };
 static_assert(sizeof(InstanceLeaf) == leaf_bytes(NodeKind::Instance));
 
-// VkGeometryInstanceFlagBitsKHR.
+// These are the bits of VkGeometryInstanceFlagBitsKHR.
 namespace instance_flag {
 inline constexpr uint32_t kFacingCullDisable = 0x1, kFlipFacing = 0x2, kForceOpaque = 0x4,
                           kForceNoOpaque = 0x8;

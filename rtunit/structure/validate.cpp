@@ -29,7 +29,7 @@ class Validation {
  public:
   explicit Validation(const mem::AddressSpace& memory) : memory_(memory) {}
 
-  // The real bounds and the worst stack need of a structure.
+  // Holds the real bounds and the worst stack need of a structure.
   struct Measured {
     Bounds bounds = empty_bounds();
     uint32_t stack_need = 1;

@@ -1,4 +1,4 @@
-// Checks encoded acceleration structures byte by byte: what a traversal relies on.
+// Checks what a traversal relies on in the bytes of an acceleration structure.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

@@ -1,5 +1,5 @@
-// The candidates that a ray has met and that no shader has decided. They are the ray's column of a warp's
-// table in the deferred any-hit mode.
+// Holds the candidates that a ray has met and that no shader has decided. They are the ray's column of a
+// warp's table in the deferred any-hit mode.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace glint::rt {
 
-// A non-opaque triangle that was hit, or a procedural primitive whose box was entered at `hit.t`.
+// Describes a non-opaque triangle that was hit, or a procedural primitive whose box was entered at `hit.t`.
 struct Candidate {
   Hit hit;
   bool is_procedural = false;
@@ -23,8 +23,8 @@ inline constexpr uint32_t kMaxTableRows = 32;  // Rows are bits of a mask.
 // geometry, primitive and record.
 inline constexpr uint32_t kTableEntryBytes = 32;
 
-// Where entries lie in memory. Row r of lane l of warp slot w lies at base + ((w * rows + r) * 32 + l) * 32,
-// so lanes that fill the same row share lines.
+// Says where entries lie in memory. Row r of lane l of warp slot w lies at base + ((w * rows + r) * 32 + l) *
+// 32, so lanes that fill the same row share lines.
 struct TableLayout {
   Address base = 0;   // physical, of this core
   uint32_t rows = 0;  // 0: no tables

@@ -1,4 +1,4 @@
-// What a shader's answer to a candidate does to the ray (Vulkan 1.3, chapter "Ray Traversal").
+// Applies a shader's answer to a candidate to the ray (Vulkan 1.3, chapter "Ray Traversal").
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/traversal/hit_rules.h"
 #include "rtunit/traversal/traversal.h"

@@ -1,4 +1,4 @@
-// The rules of which hit counts and when a traversal is over, which visits and shaders' answers share.
+// Decides which hit counts and when a traversal is over, for visits and for shaders' answers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>

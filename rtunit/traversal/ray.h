@@ -1,4 +1,4 @@
-// A ray as a shader hands it over, and a hit as the unit hands it back.
+// Describes a ray as a shader hands it over, and a hit as the unit hands it back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace glint::rt {
 
-// Vulkan ray flags (SPV_KHR_ray_tracing, section "Ray Flags").
+// These are Vulkan's ray flags (SPV_KHR_ray_tracing, section "Ray Flags").
 namespace ray_flag {
 inline constexpr uint32_t kOpaque = 0x1, kNoOpaque = 0x2, kTerminateOnFirstHit = 0x4, kSkipClosestHit = 0x8,
                           kCullBackFacing = 0x10, kCullFrontFacing = 0x20, kCullOpaque = 0x40,
@@ -27,7 +27,7 @@ struct Ray {
 
 inline constexpr uint32_t kNoHit = 0xffff'ffff;
 
-// A candidate or committed hit. `instance` == kNoHit: none.
+// Describes a candidate or committed hit. There is none if `instance` is kNoHit.
 struct Hit {
   float t = 0;
   float u = 0, v = 0;          // weights of vertex 1 and 2 (triangles)
@@ -41,7 +41,7 @@ struct Hit {
   bool valid() const { return instance != kNoHit; }
 };
 
-// What a lane's traversal waits for.
+// Says what a lane's traversal waits for.
 enum class RayStatus : uint8_t {
   Idle,  // The lane holds no ray.
   Traversing,

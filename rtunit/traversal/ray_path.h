@@ -1,4 +1,4 @@
-// The nodes from the root to every node that a ray still has to visit, for stacks that forget entries.
+// Holds the nodes from the root to every node that a ray still has to visit, for stacks that forget entries.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace glint::rt {
 
-// A node to be brought from memory.
+// Names a node that is to be brought from memory.
 struct Fetch {
   Address address = 0;  // virtual
   uint32_t bytes = 0;

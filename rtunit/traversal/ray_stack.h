@@ -1,4 +1,4 @@
-// The stack of one ray: nodes still to be visited.
+// Holds the stack of one ray: the nodes that it still has to visit.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -12,7 +12,7 @@ namespace glint::rt {
 // (rtunit/stack_model.h).
 inline constexpr int kStackEntries = 192;
 
-// One node still to be visited: where it is and where the ray enters it.
+// Names a node that is still to be visited, and says where the ray enters it.
 struct StackEntry {
   uint32_t node;  // NodeRef (rtunit/structure/structure.h): block from the base of the structure being
                   // walked, and kind

@@ -1,4 +1,4 @@
-// The traversal state of one ray: what a lane of the RT unit's warp buffer holds.
+// Holds the traversal state of one ray, which a lane of the RT unit's warp buffer keeps.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>

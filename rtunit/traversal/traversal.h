@@ -1,5 +1,4 @@
-// Ray traversal one node at a time, with Vulkan's rules: the same steps for the functional and the timing
-// machine.
+// Walks rays one node at a time by Vulkan's rules. The functional and the timing machine make the same steps.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -46,8 +45,9 @@ inline void present(RayState& state, uint32_t row) {
   state.table->used &= ~(1u << row);
 }
 
-// Answers of shaders. NeedsAnyHit ends with one of the first three; NeedsIntersection with any number of
-// report() (each that answers NeedsAnyHit followed by one of the three), then finish_intersection().
+// These are the answers of shaders. NeedsAnyHit ends with one of the first three; NeedsIntersection with any
+// number of report() (each that answers NeedsAnyHit followed by one of the three), then
+// finish_intersection().
 void accept_candidate(RayState& state);
 void ignore_candidate(RayState& state);
 void terminate_candidate(RayState& state);  // Accepts, and ends the traversal.

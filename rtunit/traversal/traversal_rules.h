@@ -1,4 +1,5 @@
-// What Vulkan leaves open about a ray's way through a structure. None of it changes which hit is nearest.
+// Decides what Vulkan leaves open about a ray's way through a structure. None of it changes which hit is
+// nearest.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "rtunit/child_order.h"

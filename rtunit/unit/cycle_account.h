@@ -10,7 +10,7 @@ namespace glint::rt {
 
 class CycleAccount {
  public:
-  // What the unit holds.
+  // Says how much the unit holds.
   struct Load {
     uint32_t warps = 0, rays = 0;
   };
@@ -33,7 +33,7 @@ class CycleAccount {
     skipped_reason_ = idle_reason;
     skipped_load_ = load;
   }
-  // RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
+  // Returns RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
   uint64_t warp_cycles_until(Cycle at) const {
     return stats_.warp_cycles.value() + (at - next_) * skipped_load_.warps;
   }

@@ -1,4 +1,4 @@
-// How the RT unit's fetch queue chooses a node and asks the L1 for it.
+// Chooses a node and asks the L1 for it.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/fetch_queue.h"
 

@@ -1,4 +1,4 @@
-// The fetch queue of the RT unit: chooses which lanes read which node, sends the requests, takes the answers.
+// Chooses which lanes read which node, sends the requests to the L1 and takes the answers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace glint::rt {
 
-// A read on its way for some lanes of one warp. Its index in the queue is the token of its requests.
+// Describes a read on its way for some lanes of one warp. Its index in the queue is the token of its
+// requests.
 struct ReadInFlight {
   static constexpr uint32_t kNone = ~0u;
   uint32_t slot = 0;
@@ -32,18 +33,19 @@ class FetchQueue final : public RequestSource {
   FetchQueue(const Params& params, const mem::AddressSpace& memory, mem::L1Port& l1, WarpBuffer& buffer,
              RtStats& stats);
 
-  // Takes a node that some lane wants, for all lanes that share the read. False: no lane wants one, or no
-  // entry is free.
+  // Takes a node that some lane wants, for all lanes that share the read. Returns false when no lane wants
+  // one or no entry is free.
   bool choose(Cycle now);
-  // A node has been chosen and not all of its requests have been taken.
+  // Returns whether the L1 has not taken all requests of the chosen node yet.
   bool has_request(Cycle) const override { return sending_ != ReadInFlight::kNone; }
   bool send(Cycle now) override;
   bool has_reads_waiting() const override { return buffer_.has_wanting_lanes(); }
   Cycle next_event(Cycle now) const override;
 
-  // An entry for a read of one request that another part of the unit sends. Returns the request's token.
+  // Makes an entry for a read of one request that another part of the unit sends. Returns the request's
+  // token.
   mem::Token open(uint32_t slot, int lane);
-  // The L1 has refused that request.
+  // Takes the entry back, because the L1 has refused the request.
   void cancel(mem::Token token);
   bool is_full() const { return max_reads_ != 0 && num_reads_ >= max_reads_; }
   uint32_t num_reads() const { return num_reads_; }
@@ -65,7 +67,7 @@ class FetchQueue final : public RequestSource {
       }
     }
   }
-  // Calls each(slot, lanes) for all whom the read is for.
+  // Calls each(slot, lanes) for all lanes that the read is for.
   template <class Each>
   void for_each_reader(mem::Token token, Each&& each) const {
     for (auto i = uint32_t(token); i != ReadInFlight::kNone; i = reads_[i].next)

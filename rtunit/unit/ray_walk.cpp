@@ -1,4 +1,4 @@
-// The steps of a ray's walk in the RT unit.
+// Makes the steps of a ray's walk in the RT unit.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/ray_walk.h"
 

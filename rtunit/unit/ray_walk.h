@@ -1,4 +1,5 @@
-// A ray's way through the RT unit: where it starts, which node is next, what a visit does, when it stops.
+// Leads a ray through the RT unit: decides where it starts, which node is next, what a visit does and when it
+// stops.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -27,7 +28,7 @@ class RayWalk {
   RayWalk(const Params& params, const mem::AddressSpace& memory, WarpBuffer& buffer, RtStats& stats);
   void add(WalkHook& hook) { hooks_.push_back(&hook); }
 
-  // The lane's ray enters the unit, for the first time or again after a shader.
+  // Begins the walk of a ray that enters the unit, for the first time or again after a shader.
   void start(uint32_t slot, int lane, Cycle now);
   // The lane is between two nodes: it wants the next one or stops, unless a hook has something to do first.
   void go_on(uint32_t slot, int lane, Cycle now);

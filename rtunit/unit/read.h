@@ -1,4 +1,4 @@
-// What a lane of the RT unit reads next, and which pipeline tests it when it has arrived.
+// Says what a lane of the RT unit reads next, and which pipeline tests it when it has arrived.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace glint::rt {
 
 class WalkHook;
 
-// The number of a test pipeline. TestPipelines::add() gives out the numbers after these.
+// Numbers a test pipeline. TestPipelines::add() gives out the numbers after these.
 using Pipe = uint8_t;
 inline constexpr Pipe kBoxPipe = 0, kTrianglePipe = 1, kTransformPipe = 2;
 inline constexpr Pipe kNoPipe = 0xff;  // What is read needs no test.

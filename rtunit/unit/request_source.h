@@ -1,4 +1,4 @@
-// What sends requests through the RT unit's port to the L1: the interface of request sources.
+// Declares the interface of the parts that send requests through the RT unit's port to the L1.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "base/types.h"
@@ -14,7 +14,7 @@ class RequestSource {
   virtual bool send(Cycle now) = 0;
   // Returns whether it holds a read that needs an entry for its answer, and so waits while all are in use.
   virtual bool has_reads_waiting() const { return false; }
-  // The earliest cycle after `now` in which it has something to do; kNever: not before something happens.
+  // Returns the earliest cycle after `now` in which it has something to do without new input.
   virtual Cycle next_event(Cycle now) const { return has_request(now) ? now + 1 : kNever; }
 };
 

@@ -1,4 +1,4 @@
-// How the RT unit writes results.
+// Sends the results of the RT unit's rays.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/result_writer.h"
 

@@ -1,4 +1,4 @@
-// What an RT unit counts.
+// Declares what an RT unit counts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace glint::rt {
 
-// What a cycle of the unit was spent on. Each cycle has exactly one reason: the first that holds.
+// Says what a cycle of the unit was spent on. Each cycle has exactly one reason: the first that holds.
 enum class Stall : uint8_t {
   NodeRequest,    // sent a request to the L1
   L1Refused,      // had a request and the L1 did not take it

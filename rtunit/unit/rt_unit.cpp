@@ -1,4 +1,4 @@
-// The parts of an RT unit and one cycle of it, from the back of the pipeline to its front.
+// Makes the parts of an RT unit, and runs a cycle of it from the back of the pipeline to its front.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/rt_unit.h"
 
@@ -134,7 +134,7 @@ bool RtUnit::has_reads_waiting() const {
                      [](const RequestSource* source) { return source->has_reads_waiting(); });
 }
 
-// What a cycle in which nothing is sent is spent on.
+// Returns what a cycle in which nothing is sent is spent on.
 Stall RtUnit::idle_reason() const {
   if (fetches_.is_full() && has_reads_waiting()) return Stall::MshrFull;
   if (pipelines_.is_any_waiting()) return Stall::TestBusy;

@@ -1,4 +1,4 @@
-// The RT unit of a core: a warp buffer whose rays fetch nodes through the L1 and test them in pipelines.
+// Models the RT unit of a core: the rays of its warps fetch nodes through the L1 and test them in pipelines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -38,12 +38,12 @@ class RtUnit final : public RtPort {
     const mem::AddressSpace& memory;
     mem::L1Port& l1;
     stats::Group* stats = nullptr;
-    Address results = 0;   // physical, line-aligned: result_bytes() of it
-    TableLayout tables{};  // line-aligned; where rays that gather candidates have theirs written
-    Address stacks = 0;    // physical, line-aligned: stack_bytes_per_warp() for each warp slot of the core
+    Address results = 0;   // physical and line-aligned; result_bytes() long
+    TableLayout tables{};  // line-aligned; candidates of rays with tables are written here
+    Address stacks = 0;    // physical and line-aligned; stack_bytes_per_warp() for each warp slot of the core
   };
   RtUnit(const Params& params, const Context& context);
-  // What Context::results must hold; 0: it is not used.
+  // Returns the bytes that Context::results must hold. 0: it is not used.
   static uint64_t result_bytes(const Params& params);
   static uint64_t stack_bytes_per_warp(const Params& params);
 
@@ -51,15 +51,15 @@ class RtUnit final : public RtPort {
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
   std::optional<uint32_t> pop_completion(Cycle) override { return buffer_.pop_completion(); }
   void tick(Cycle now) override;
-  // The L1's answers are new input: the L1's own next_event() tells of them.
+  // The L1's answers are new input, and its own next_event() tells of them.
   Cycle next_event(Cycle now) const override;
 
   std::string describe() const override;
 
-  // Gives the cycles up to `end` to their reasons: once, at the end of the run.
+  // Accounts the cycles up to `end`. It is called once, at the end of the run.
   void finish(Cycle end) { account_.skip_to(end); }
   const RtStats& stats() const { return stats_; }
-  // RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
+  // Returns RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
   uint64_t warp_cycles_until(Cycle at) const { return account_.warp_cycles_until(at); }
   uint32_t num_resident() const { return buffer_.num_resident(); }
   Probe<NodeVisited>& node_visited() { return walk_.node_visited(); }

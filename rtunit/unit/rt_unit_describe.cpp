@@ -1,4 +1,4 @@
-// What an RT unit says of itself when the machine is stuck.
+// Describes an RT unit when the machine is stuck.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 

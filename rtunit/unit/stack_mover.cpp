@@ -1,4 +1,4 @@
-// What the RT unit does for its rays' stacks: spills, fills, and restarts from the root.
+// Spills, fills and restarts the stacks of the RT unit's rays.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/stack_mover.h"
 

@@ -39,7 +39,7 @@ class StackMover final : public RequestSource, public WalkHook {
   Cycle next_event(Cycle now) const override;
 
  private:
-  // A sector of a lane's stack to be written or read.
+  // Describes a sector of a lane's stack that is to be written or read.
   struct Move {
     uint32_t slot = 0;
     uint16_t row = 0;

@@ -1,4 +1,4 @@
-// How the RT unit writes candidates.
+// Collects what visits put into candidate tables, and sends it.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/table_writer.h"
 

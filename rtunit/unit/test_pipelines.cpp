@@ -1,4 +1,4 @@
-// When the tests of the RT unit start and end.
+// Decides when the tests of the RT unit start and end.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/test_pipelines.h"
 

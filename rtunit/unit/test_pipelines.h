@@ -1,4 +1,4 @@
-// The test pipelines of the RT unit: box, triangle and transform, each with a rate and a latency.
+// Tests boxes, triangles and instances in pipelines that have a rate and a latency.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>

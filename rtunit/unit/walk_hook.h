@@ -1,4 +1,4 @@
-// What a part of the RT unit adds to the steps of a ray's walk: the interface of hooks.
+// Declares the interface of the parts that add something to the steps of a ray's walk.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace glint::rt {
 
-// A visit that has just been made.
+// Describes a visit that has just been made.
 struct Visit {
   uint32_t slot = 0;  // of the warp buffer
   int lane = 0;

@@ -1,4 +1,4 @@
-// How warps enter the RT unit's warp buffer and how they leave it.
+// Lets warps into the RT unit's warp buffer and out of it.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/unit/warp_buffer.h"
 

@@ -1,4 +1,4 @@
-// The warp buffer of the RT unit: the warps that are in the unit, and what each of their lanes does.
+// Holds the warps that are in the RT unit, and what each of their lanes does.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace glint::rt {
 
-// A warp takes a slot of the warp buffer, or frees it (`has_left`).
+// Tells that a warp takes a slot of the warp buffer, or frees it (`has_left`).
 struct WarpMoved {
   Cycle cycle = 0;
   uint32_t buffer_slot = 0, warp_slot = 0;
@@ -25,8 +25,8 @@ struct WarpMoved {
   const RayState* states = nullptr;
 };
 
-// A slot of the warp buffer. At any time a lane of `mask` either wants a read, waits for one, is in a test or
-// has stopped.
+// Holds one warp in the buffer. At any time a lane of `mask` either wants a read, waits for one, is in a test
+// or has stopped.
 struct BufferSlot {
   bool is_used = false;
   uint32_t warp_slot = 0;  // the core's
@@ -38,12 +38,12 @@ struct BufferSlot {
   size_t next_exit = 0;           // first of the buffer's exits that the warp has not passed
   std::array<Read, kLanes> read;  // of the lanes that want a read, wait for one or are in a test
 
-  // The ray that a lane works for.
+  // Returns the ray that a lane works for.
   RayState& ray_of(int lane) const { return states[lane]; }
   bool is_done() const { return stopped == mask && unsent_writes == 0; }
 };
 
-// Something that a warp passes after its lanes have stopped and before the core gets it back.
+// Stands between the stop of a warp's last lane and its return to the core.
 class WarpExit {
  public:
   virtual ~WarpExit() = default;
@@ -54,7 +54,7 @@ class WarpExit {
 class WarpBuffer {
  public:
   WarpBuffer(const Params& params, RtStats& stats);
-  // Exits are passed in the order in which they were added.
+  // Adds an exit. A warp passes the exits in the order in which they were added.
   void add(WarpExit& exit) { exits_.push_back(&exit); }
 
   bool has_room() const { return num_resident_ < slots_.size(); }
