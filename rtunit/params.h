@@ -66,42 +66,47 @@ struct Params {
   static constexpr auto params() {
     return std::tuple{
         choice(&Params::unit, "unit",
-               "Who walks rays: the RT unit of the keys below, or the core's own code, as ordinary "
-               "instructions (shaders/traversal).",
+               "Selects who walks rays: the RT unit, which the other keys under `rt` describe, or ordinary "
+               "instructions of the core (shaders/traversal).",
                &unit_names),
         param(&Params::warps, "warps", "warp", "Number of warps that the unit holds at once.", 1, 64),
         param(&Params::requests_per_cycle, "requests_per_cycle", "request",
               "Largest number of requests sent to the L1 in a cycle.", 1, 16),
-        param(&Params::request_bytes, "request_bytes", "B",
-              "Largest number of bytes that one request reads; a multiple of the 32 B sector.", 32, 128),
+        param(&Params::request_bytes, "request_bytes", "byte",
+              "Largest number of bytes that one request reads. It is a multiple of the 32 B sector.", 32,
+              128),
         param(&Params::responses_per_cycle, "responses_per_cycle", "response",
               "Largest number of answers taken from the L1 in a cycle.", 1, 64),
         param(&Params::mshr_entries, "mshr_entries", "entry",
-              "Largest number of nodes and stack sectors that wait for the L1 at once. 0: no limit but the "
-              "number "
-              "of lanes.",
+              "Largest number of nodes and stack sectors that wait for the L1 at once. 0: only the number of "
+              "lanes limits it.",
               0, 2048),
         param(&Params::retires_per_cycle, "retires_per_cycle", "warp",
               "Largest number of warps given back to the core in a cycle.", 1, 64),
         flag(&Params::result_store, "result_store",
-             "The unit writes 32 B a ray through the L1 before it gives the warp back."),
+             "True: the unit writes 32 B per ray through the L1 before it gives the warp back. False: "
+             "results go to registers."),
         flag(&Params::nearest_first_hit, "nearest_first_hit",
-             "Rays that may end at any hit look for the nearest hit, so that their result does not depend on "
-             "the "
-             "traversal order."),
+             "True: rays that may end at any hit look for the nearest hit, so that their result does not "
+             "depend on the traversal order. False: they end at the first hit."),
         flag(&Params::retest, "retest",
-             "The unit drops a node from the stack, without a visit, when a nearer hit was found since."),
-        section(&Params::box, "box", "The pipeline that tests internal nodes and AABBs; a node is one test."),
-        section(&Params::triangle, "triangle", "The pipeline that tests triangles; a triangle is one test."),
+             "True: the unit drops a node from the stack, without a visit, when a nearer hit was found "
+             "since. False: it visits the node."),
+        section(&Params::box, "box",
+                "Parameters of the pipeline that tests internal nodes and AABBs. A node is one test."),
+        section(&Params::triangle, "triangle",
+                "Parameters of the pipeline that tests triangles. A triangle is one test."),
         section(&Params::transform, "transform",
-                "The pipeline that transforms rays to object space; an instance is one test."),
-        policy(&Params::scheduler, "scheduler", "Which warp of the unit sends a node request."),
+                "Parameters of the pipeline that transforms rays to object space. An instance is one test."),
+        policy(&Params::scheduler, "scheduler", "Selects which warp of the unit sends a node request."),
         policy(&Params::any_hit, "any_hit",
-               "When intersection and any-hit shaders run: at each candidate, or over a table after the "
-               "traversal."),
-        policy(&Params::child_order, "child_order", "In which order a ray visits the children that it hits."),
-        policy(&Params::coalescing, "coalescing", "Which lanes that want the same node share its fetch."),
-        policy(&Params::stack, "stack", "Where the nodes that a ray still has to visit are kept."),
+               "Selects when intersection and any-hit shaders run: at each candidate, or over a table after "
+               "the traversal."),
+        policy(&Params::child_order, "child_order",
+               "Selects the order in which a ray visits the children that it hits."),
+        policy(&Params::coalescing, "coalescing",
+               "Selects which lanes that want the same node share its fetch."),
+        policy(&Params::stack, "stack", "Selects where a ray keeps the nodes that it still has to visit."),
         section(
             &Params::shortcuts, "shortcuts",
             "Switches that make the unit behave as Vulkan-Sim does and hardware does not, for comparisons.")};

@@ -13,9 +13,8 @@ class FirstInternal final : public ChildOrder {
  public:
   static constexpr std::string_view kName = "first_internal";
   static constexpr std::string_view kDoc =
-      "The first internal child that is hit comes first, then the other children from the last to the first, "
-      "as "
-      "in Vulkan-Sim.";
+      "The first internal child that is hit comes first. The other children follow from the last to the "
+      "first, as in Vulkan-Sim.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -12,7 +12,8 @@ class NearFirst final : public ChildOrder {
  public:
   static constexpr std::string_view kName = "near_first";
   static constexpr std::string_view kDoc =
-      "The nearest child comes first; of equally near children, the lower.";
+      "The nearest child comes first. Of equally near children, the one that lies first in the node comes "
+      "first.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

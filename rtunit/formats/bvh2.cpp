@@ -15,7 +15,8 @@ namespace {
 class Bvh2Format final : public NodeFormat {
  public:
   static constexpr std::string_view kName = "bvh2";
-  static constexpr std::string_view kDoc = "64 B nodes of two children, planes in single precision.";
+  static constexpr std::string_view kDoc =
+      "Internal nodes have 64 B and two children, whose planes are in single precision.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

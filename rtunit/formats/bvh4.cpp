@@ -15,7 +15,8 @@ namespace {
 class Bvh4Format final : public NodeFormat {
  public:
   static constexpr std::string_view kName = "bvh4";
-  static constexpr std::string_view kDoc = "128 B nodes of four children, planes in single precision.";
+  static constexpr std::string_view kDoc =
+      "Internal nodes have 128 B and four children, whose planes are in single precision.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -16,7 +16,8 @@ class Bvh6Format final : public NodeFormat {
  public:
   static constexpr std::string_view kName = "bvh6";
   static constexpr std::string_view kDoc =
-      "64 B nodes of six children, 8-bit planes, power-of-two steps an axis.";
+      "Internal nodes have 64 B and six children, whose planes have 8 bits and one power-of-two step per "
+      "axis.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -16,7 +16,8 @@ class Bvh8Format final : public NodeFormat {
  public:
   static constexpr std::string_view kName = "bvh8";
   static constexpr std::string_view kDoc =
-      "80 B nodes of eight children, 8-bit planes, power-of-two steps an axis; leaves apart.";
+      "Internal nodes have 80 B and eight children, whose planes have 8 bits and one power-of-two step per "
+      "axis. Leaves lie apart from them.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

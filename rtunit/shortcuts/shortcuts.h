@@ -24,18 +24,18 @@ struct Shortcuts {
   static constexpr auto params() {
     return std::tuple{
         flag(&Shortcuts::same_cycle_hits, "same_cycle_hits",
-             "The unit takes answers of the L1 also after it has sent the requests of a cycle: "
-             "with memory.l1.hit_latency = 0 a hit takes no time."),
+             "True: the unit takes answers of the L1 also after it has sent the requests of a cycle, so that "
+             "a hit takes no time with memory.l1.hit_latency = 0."),
         flag(&Shortcuts::fetch_headers, "fetch_headers",
-             "A ray reads the 64 B header of a structure before its root: when it starts, and "
-             "at each instance that it enters."),
+             "True: a ray reads the 64 B header of a structure before the root, when it starts and at each "
+             "instance that it enters."),
         flag(&Shortcuts::fetch_descriptors, "fetch_descriptors",
-             "A ray reads the first 8 B of a triangle or procedural leaf on their own, and "
-             "then the whole leaf."),
+             "True: a ray reads the first 8 B of a triangle or procedural leaf on their own, and then the "
+             "whole leaf."),
         flag(&Shortcuts::store_each_hit, "store_each_hit",
-             "The unit stores every triangle that a ray meets within its interval at once, and "
-             "every candidate of the deferred any-hit mode twice. A store writes 32 B at the "
-             "start of 256 new ones and is sent before any node is asked for."),
+             "True: the unit stores every triangle that a ray meets within its interval at once, and every "
+             "candidate of the deferred any-hit mode twice. A store writes 32 B at the start of 256 new "
+             "bytes and is sent before any node is asked for."),
         param(&Shortcuts::store_latency, "store_latency", "cycle",
               "Cycles from a warp's last store to its acknowledgement, before which the warp is "
               "not given back. It has an effect only with store_each_hit.",

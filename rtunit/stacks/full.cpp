@@ -11,7 +11,7 @@ namespace {
 class Full final : public StackModel {
  public:
   static constexpr std::string_view kName = "full";
-  static constexpr std::string_view kDoc = "Every entry of a ray is on chip.";
+  static constexpr std::string_view kDoc = "A ray keeps every entry on chip.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
     static constexpr auto params() { return std::tuple{}; }

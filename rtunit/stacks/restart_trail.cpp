@@ -17,12 +17,12 @@ class RestartTrail final : public StackModel {
  public:
   static constexpr std::string_view kName = "restart_trail";
   static constexpr std::string_view kDoc =
-      "The newest entries are on chip; a ray finds the others again from the root.";
+      "A ray keeps its newest entries on chip and finds the others again from the root.";
   struct Params {
     uint32_t entries = 8;  // Choice: as many as `short_stack` has, to compare them
     static constexpr auto params() {
-      return std::tuple{param(&Params::entries, "entries", "entry", "Number of entries of a ray on chip.", 1,
-                              kStackEntries)};
+      return std::tuple{param(&Params::entries, "entries", "entry",
+                              "Number of stack entries that a ray has on chip.", 1, kStackEntries)};
     }
   };
   RestartTrail(Params params, Context) : params_(params) {}

@@ -15,15 +15,17 @@ namespace {
 class ShortStack final : public StackModel {
  public:
   static constexpr std::string_view kName = "short_stack";
-  static constexpr std::string_view kDoc = "The newest entries are on chip, the others are in local memory.";
+  static constexpr std::string_view kDoc =
+      "A ray keeps its newest entries on chip and the others in local memory.";
   struct Params {
     // This is the smallest stack of AMD's DS_BVH_STACK instructions (RDNA 3 ISA guide, 2023: 8, 16, 32 or 64
     // entries).
     uint32_t entries = 8;
     static constexpr auto params() {
-      return std::tuple{param(&Params::entries, "entries", "entry",
-                              "Number of entries of a ray on chip. Four entries spill or fill at a time.",
-                              kEntriesPerSector, kStackEntries)};
+      return std::tuple{
+          param(&Params::entries, "entries", "entry",
+                "Number of stack entries that a ray has on chip. Four entries spill or fill at a time.",
+                kEntriesPerSector, kStackEntries)};
     }
   };
   ShortStack(Params params, Context) : params_(params) {}

@@ -47,11 +47,11 @@ struct BuildOptions {
   PolicyChoice<NodeFormat> format{"bvh6"};  // Vulkan-Sim 2.0
   bool pair_triangles = true;
   static constexpr auto params() {
-    return std::tuple{
-        policy(&BuildOptions::format, "format",
-               "How internal nodes are written, and how many children they have."),
-        flag(&BuildOptions::pair_triangles, "pair_triangles",
-             "Two neighbouring triangles of a geometry share a leaf where that adds no surface area.")};
+    return std::tuple{policy(&BuildOptions::format, "format",
+                             "Selects how internal nodes are written, and how many children they have."),
+                      flag(&BuildOptions::pair_triangles, "pair_triangles",
+                           "True: two neighbouring triangles of a geometry share a leaf where that adds no "
+                           "surface area. False: each triangle has a leaf of its own.")};
   }
 };
 
