@@ -25,24 +25,28 @@ LatencyStats::LatencyStats(stats::Group* parent, std::string name, const char* w
     : Group(parent, std::move(name)),
       reads_(this, "reads", "request", what,
              [](const LatencyStats& of, Traffic traffic) { return of.reads(traffic); }),
-      cycles_(this, "cycles", "cycle", "Sum of the latencies of what `reads` counts, by traffic class.",
+      cycles_(this, "cycles", "cycle",
+              "Sum of the latencies of all reads that `reads` counts, by traffic class.",
               [](const LatencyStats& of, Traffic traffic) {
                 uint64_t sum = 0;
                 for (const Latencies* part : of.parts_) sum += part->cycles(traffic);
                 return sum;
               }),
       p50_(this, "p50", "cycle",
-           "Latency that half of what `reads` counts did not exceed: the upper end of its bucket.",
+           "Latency that half of the reads did not exceed, by traffic class. It is the upper end of its "
+           "bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 50); }),
       p90_(this, "p90", "cycle",
-           "Latency that 90 % of what `reads` counts did not exceed: the upper end of its bucket.",
+           "Latency that 90 % of the reads did not exceed, by traffic class. It is the upper end of its "
+           "bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 90); }),
       p99_(this, "p99", "cycle",
-           "Latency that 99 % of what `reads` counts did not exceed: the upper end of its bucket.",
+           "Latency that 99 % of the reads did not exceed, by traffic class. It is the upper end of its "
+           "bucket.",
            [](const LatencyStats& of, Traffic traffic) { return of.percentile(traffic, 99); }),
-      buckets_(this,
-               "What `reads` counts, by traffic class and latency; from 16 cycles on, each octave has eight "
-               "buckets.") {
+      buckets_(
+          this,
+          "Number of reads by traffic class and latency. From 16 cycles on, each octave has eight buckets.") {
 }
 
 uint64_t LatencyStats::count(Traffic traffic, uint32_t bucket) const {

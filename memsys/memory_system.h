@@ -46,13 +46,12 @@ class MemorySystem {
   double imbalance() const;
 
   stats::Group group_;
-  stats::Value imbalance_{
-      &group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
-      "Data clocks of the busiest DRAM channel, divided by the mean of all channels; 1 is even."};
-  LatencyStats load_latency_{
-      &group_, "load_latency",
-      "Number of reads that the L1s have answered, atomics included, by traffic class; a latency is the time "
-      "from acceptance to answer."};
+  stats::Value imbalance_{&group_, "dram_imbalance", "ratio", [this] { return imbalance(); },
+                          "Data clocks of the busiest DRAM channel, divided by the mean of all channels. 1 "
+                          "means that all channels are equally busy."};
+  LatencyStats load_latency_{&group_, "load_latency",
+                             "Number of reads that the L1s have answered, atomics included, by traffic "
+                             "class. A latency is the time from acceptance to answer."};
   PartitionMap map_;
   std::unique_ptr<Network> network_;
   std::vector<std::unique_ptr<stats::Group>> core_groups_;

@@ -40,41 +40,44 @@ struct L1Params {
 
   static constexpr auto params() {
     return std::tuple{
-        param(&L1Params::size, "size", "byte", "Number of bytes in the data array.", 0, uint64_t{1} << 30),
-        param(&L1Params::ways, "ways", "way",
-              "Number of lines in a set. 0 makes the cache fully associative.", 0, 1 << 20),
-        policy(&L1Params::replacement, "replacement", "Policy that chooses which line of a set makes way."),
+        param(&L1Params::size, "size", "byte", "Size of the L1's data array.", 0, uint64_t{1} << 30),
+        param(&L1Params::ways, "ways", "way", "Number of lines per set. 0: the cache is fully associative.",
+              0, 1 << 20),
+        policy(&L1Params::replacement, "replacement",
+               "Selects the line of a set that makes way for a new line in the L1."),
         param(&L1Params::hit_latency, "hit_latency", "cycle",
-              "Cycles from an access to its token when all sectors are present.", 0, 10000),
+              "Cycles from an access to its answer when all sectors are present.", 0, 10000),
         param(&L1Params::miss_latency, "miss_latency", "cycle",
               "Cycles from an access to the earliest departure of its miss.", 0, 10000),
         param(&L1Params::ports, "ports", "access/cycle",
-              "Number of accesses that the cache takes in a cycle.", 0, 64),
+              "Largest number of accesses that the cache takes per cycle.", 0, 64),
         param(&L1Params::banks, "banks", "bank",
-              "Number of banks. Lines are spread over them, and each bank takes one access a cycle.", 0, 64),
-        param(&L1Params::mshr_entries, "mshr_entries", "line", "Number of lines that can be on the way.", 0,
-              1 << 16),
+              "Number of banks. Lines are spread over them, and each bank takes one access per cycle.", 0,
+              64),
+        param(&L1Params::mshr_entries, "mshr_entries", "line",
+              "Largest number of lines that are on their way to the cache at once.", 0, 1 << 16),
         param(&L1Params::mshr_merges, "mshr_merges", "request",
-              "Number of reads that can wait for one line, the first included.", 0, 1 << 12),
+              "Largest number of reads that wait for one line on its way, the first included.", 0, 1 << 12),
         param(&L1Params::miss_queue, "miss_queue", "packet",
-              "Number of misses, writes and write-backs that can wait for the network.", 0, 1 << 16),
+              "Largest number of misses, writes and write-backs that wait for the network.", 0, 1 << 16),
         flag(&L1Params::local_write_back, "local_write_back",
-             "Whether local memory is written back on eviction. Otherwise it is written through."),
+             "True: a write to local memory stays in the cache until its line is evicted. False: it goes "
+             "through to the L2."),
         flag(&L1Params::global_write_back, "global_write_back",
-             "Whether all other memory is written back on eviction. Otherwise it is written through."),
+             "True: a write to memory other than local memory stays in the cache until its line is evicted. "
+             "False: it goes through to the L2."),
         flag(&L1Params::write_allocate, "write_allocate",
-             "Whether a write that goes through allocates a line with the sectors that it covers whole. "
-             "Otherwise it allocates none."),
+             "True: a write that goes through to the L2 allocates a line with the sectors that it covers "
+             "whole. False: it allocates none."),
         flag(&L1Params::write_evict, "write_evict",
-             "Whether a write that goes through drops the sectors that it hits. Otherwise they get the new "
-             "bytes."),
+             "True: a write that goes through to the L2 drops the sectors that it hits. False: they get the "
+             "new bytes."),
         choice(&L1Params::allocate, "allocate",
-               "When a miss takes its line: when the data arrive (streaming), or when the miss is accepted. "
-               "Then "
-               "the line is held until the data arrive.",
+               "Selects when a miss takes its line: when the data arrive (streaming), or when the miss is "
+               "accepted, which holds the line until the data arrive.",
                &l1_allocations),
         flag(&L1Params::fill_takes_access, "fill_takes_access",
-             "Whether a fill keeps its bank from taking an access in the same cycle.")};
+             "True: a fill keeps its bank from taking an access in the same cycle. False: it does not.")};
   }
 };
 
@@ -92,7 +95,8 @@ struct NocParams {
 
   static constexpr auto params() {
     return std::tuple{
-        policy(&NocParams::topology, "topology", "Network that connects the cores with the L2 slices."),
+        policy(&NocParams::topology, "topology",
+               "Selects the network that connects the cores with the L2 slices."),
         param(&NocParams::core_request_bytes, "core_request_bytes", "byte/cycle",
               "Width of a core's port towards the network.", 0, 4096),
         param(&NocParams::core_reply_bytes, "core_reply_bytes", "byte/cycle",
@@ -110,9 +114,8 @@ struct NocParams {
               "ports.",
               0, 10000),
         param(&NocParams::credits, "credits", "packet",
-              "Number of packets of one core that may be on their way through the crossbar to one L2 slice, "
-              "or wait "
-              "there. 0: no limit.",
+              "Largest number of packets of one core that are on their way through the crossbar to one L2 "
+              "slice, or wait there. 0: there is no limit.",
               0, 1 << 12),
         param(&NocParams::sides, "sides", "side",
               "Number of sides of the chip that the crossbar spans. Cores and L2 slices are split evenly, in "
@@ -147,44 +150,44 @@ struct L2Params {
               "Number of L2 slices in a partition. Each slice has its own ports, and all share the DRAM "
               "channel.",
               1, 16),
-        param(&L2Params::slice_size, "slice_size", "byte", "Number of bytes in one slice.", 0,
-              uint64_t{1} << 32),
-        param(&L2Params::ways, "ways", "way",
-              "Number of lines in a set. 0 makes the slice fully associative.", 0, 1 << 20),
-        policy(&L2Params::replacement, "replacement", "Policy that chooses which line of a set makes way."),
+        param(&L2Params::slice_size, "slice_size", "byte", "Size of an L2 slice.", 0, uint64_t{1} << 32),
+        param(&L2Params::ways, "ways", "way", "Number of lines per set. 0: the slice is fully associative.",
+              0, 1 << 20),
+        policy(&L2Params::replacement, "replacement",
+               "Selects the line of a set that makes way for a new line in an L2 slice."),
         param(&L2Params::latency, "latency", "cycle",
               "Cycles from the service of a packet to the reply of a hit, or to the departure of a miss to "
               "DRAM.",
               1, 10000),
         param(&L2Params::sectors_per_cycle, "sectors_per_cycle", "sector/cycle",
-              "Number of sectors that the slice reads or writes in a cycle.", 0, 64),
-        param(&L2Params::mshr_entries, "mshr_entries", "line", "Number of lines that can be on the way.", 0,
-              1 << 16),
+              "Number of sectors that a slice reads or writes per cycle.", 0, 64),
+        param(&L2Params::mshr_entries, "mshr_entries", "line",
+              "Largest number of lines that are on their way to the slice at once.", 0, 1 << 16),
         param(&L2Params::mshr_merges, "mshr_merges", "request",
-              "Number of reads that can wait for one line, the first included.", 0, 1 << 12),
+              "Largest number of reads that wait for one line on its way, the first included.", 0, 1 << 12),
         param(&L2Params::dram_queue, "dram_queue", "request",
-              "Number of reads and writes of sectors that can wait between the slice and the DRAM scheduler.",
+              "Largest number of reads and writes of sectors that wait between the slice and the DRAM "
+              "scheduler.",
               0, 1 << 16),
         param(&L2Params::atomic_interval, "atomic_interval", "cycle",
               "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns.", 1,
               1000),
         param(&L2Params::atomic_lane_interval, "atomic_lane_interval", "cycle",
               "Extra slice cycles per lane of an atomic, in steps of 1/16.", 0.0, 1000.0),
-        param(
-            &L2Params::write_visit, "write_visit", "cycle",
-            "Fixed slice cycles per write, plus one cycle per sector. 0: no fixed cost, and sectors cost the "
-            "same as for reads.",
-            0.0, 1000.0),
+        param(&L2Params::write_visit, "write_visit", "cycle",
+              "Fixed slice cycles per write, plus one cycle per sector. 0: there is no fixed cost, and "
+              "sectors cost the same as for reads.",
+              0.0, 1000.0),
         param(&L2Params::partial_interval, "partial_interval", "cycle",
-              "Slice cycles per sector that a write covers in part, in steps of 1/16. 0: the same as for a "
-              "whole "
-              "sector.",
+              "Slice cycles per sector that a write covers in part, in steps of 1/16. 0: they are the same "
+              "as for a whole sector.",
               0.0, 1000.0),
         flag(&L2Params::write_masks, "write_masks",
-             "Whether the slice knows which words of a sector were written, and fetches a sector that was "
-             "written in part when it is read. Otherwise each write covers its sectors whole."),
+             "True: the slice knows which words of a sector were written, and fetches a sector that was "
+             "written in part when it is read. False: each write covers its sectors whole."),
         flag(&L2Params::fill_takes_service, "fill_takes_service",
-             "Whether sectors from DRAM take the slice's time, as sectors that are read do.")};
+             "True: sectors from DRAM take the slice's time, as sectors that are read do. False: they take "
+             "none.")};
   }
 };
 
@@ -199,18 +202,17 @@ struct Params {
 
   static constexpr auto params() {
     return std::tuple{
-        param(&Params::line, "line", "byte", "Number of bytes in a line of both cache levels.", 0, 4096),
+        param(&Params::line, "line", "byte", "Size of a line in both cache levels.", 0, 4096),
         param(&Params::interleave, "interleave", "byte",
               "Number of consecutive bytes that stay in one partition.", 0, 1 << 20),
         choice(&Params::hash, "hash",
-               "How addresses spread over L2 slices: a hash turns each round over the slices, or the slices "
-               "follow "
-               "each other.",
+               "Selects how chunks of `interleave` bytes spread over the L2 slices: a hash rotates the order "
+               "of the slices in each round, or every round has the same order.",
                &partition_hashes),
-        section(&Params::l1, "l1", "Data cache of each core."),
-        section(&Params::noc, "noc", "Network between cores and partitions."),
-        section(&Params::l2, "l2", "Cache slice of each partition."),
-        section(&Params::dram, "dram", "Memory channel of each partition.")};
+        section(&Params::l1, "l1", "Parameters of the data cache of each core (L1)."),
+        section(&Params::noc, "noc", "Parameters of the network between cores and L2 slices."),
+        section(&Params::l2, "l2", "Parameters of the L2 slices of each partition."),
+        section(&Params::dram, "dram", "Parameters of the DRAM channel of each partition.")};
   }
   uint32_t num_slices() const { return dram.channels * l2.slices; }
 };

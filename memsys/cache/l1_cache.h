@@ -28,15 +28,15 @@ struct L1Stats : CacheStats {
       &group, "refusals", "attempt",
       "Number of refused attempts, by reason; the unit tries again in a later cycle."};
   stats::Counter fills{&group, "fills", "reply",
-                       "Number of replies that the cache took, at most one a cycle."};
+                       "Number of replies that the cache took, at most one per cycle."};
   stats::Counter request_bytes{&group, "request_bytes", "byte",
                                "Bytes that the cache sent into the network, headers included."};
   stats::Counter reply_bytes{&group, "reply_bytes", "byte",
                              "Bytes that the cache received from the network, headers included."};
   stats::Counter request_wait{&group, "request_wait", "cycle",
-                              "Sum over packets of the cycles that they waited for the request port."};
+                              "Cycles that packets waited for the request port, summed over packets."};
   stats::Counter reply_wait{&group, "reply_wait", "cycle",
-                            "Sum over replies of the cycles from arrival to fill."};
+                            "Cycles from a reply's arrival to its fill, summed over replies."};
   stats::Histogram miss_latency{&group, "miss_latency", "cycle", stats::linear(0, 2048, 32),
                                 "Cycles from a read that did not hit to its last sector."};
   stats::Histogram l2_latency{

@@ -38,9 +38,9 @@ struct L2Stats : CacheStats {
   stats::Counter reply_bytes{&group, "reply_bytes", "byte",
                              "Bytes that the slice sent into the network, headers included."};
   stats::Counter request_wait{&group, "request_wait", "cycle",
-                              "Sum over packets of the cycles from arrival to service."};
+                              "Cycles from a packet's arrival to its service, summed over packets."};
   stats::Counter reply_wait{&group, "reply_wait", "cycle",
-                            "Sum over replies of the cycles that they waited for the reply port."};
+                            "Cycles that replies waited for the reply port, summed over replies."};
   stats::Counter dram_reads{&group, "dram_reads", "request",
                             "Number of reads that went to the DRAM channel."};
   stats::Counter dram_writes{&group, "dram_writes", "request",

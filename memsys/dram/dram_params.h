@@ -58,14 +58,14 @@ struct DramParams {
 
   static constexpr auto channel_params() {
     return std::tuple{
-        DramKindParam{
-            "kind",
-            "Memory part whose data sheet sets the geometry, the clock and the times of this section. "
-            "A key that a file gives wins over the part."},
+        DramKindParam{"kind",
+                      "Selects the memory part whose data sheet sets the geometry, the clock and the times "
+                      "of the DRAM channels. A key that a file gives wins over the part."},
         param(&DramParams::channels, "channels", "channel",
               "Number of memory partitions. Each has one DRAM channel and its L2 slices.", 0, 1024),
         policy(&DramParams::model, "model",
-               "Model of the channel's timing: commands of banks, or one latency and one bandwidth."),
+               "Selects how a channel's timing is modelled: by the commands of its banks, or by one latency "
+               "and one bandwidth."),
         param(&DramParams::bank_groups, "bank_groups", "group", "Number of bank groups of a channel.", 0, 64),
         param(&DramParams::banks, "banks", "bank", "Number of banks of a channel, over all groups.", 0, 64),
         param(&DramParams::row_bytes, "row_bytes", "byte", "Number of bytes in a row of one bank.", 0,
@@ -76,18 +76,17 @@ struct DramParams {
               "Number of data transfers in a command clock.", 0, 64),
         param(&DramParams::burst, "burst", "transfer", "Number of transfers of one column command.", 0, 256),
         param(&DramParams::queue, "queue", "request",
-              "Number of requests that the scheduler can choose from.", 0, 1 << 16),
+              "Largest number of requests that the scheduler can choose from.", 0, 1 << 16),
         param(&DramParams::latency, "latency", "core cycle",
               "Cycles from the L2 slice to the scheduler's queue.", 0, 10000),
         flag(&DramParams::dual_command_bus, "dual_command_bus",
-             "Whether a clock can carry one row and one column command, as in HBM. Otherwise a clock carries "
-             "one command."),
+             "True: a clock can carry one row and one column command, as in HBM. False: a clock carries one "
+             "command."),
         param(&DramParams::activate_clocks, "activate_clocks", "clock",
               "Number of clocks of the command bus that an activate takes.", 1, 8),
         param(&DramParams::bus_turn, "bus_turn", "clock",
               "Clocks of the data bus from a read's data to a write's data.", 0, 1000),
-        policy(&DramParams::scheduler, "scheduler",
-               "Policy that chooses which waiting request a free bank gets.")};
+        policy(&DramParams::scheduler, "scheduler", "Selects which waiting request a free bank gets.")};
   }
   static constexpr auto time_params() {
     return std::tuple{
@@ -118,8 +117,10 @@ struct DramParams {
         param(&DramParams::wtr_l, "wtr_l", "ns",
               "Time from the last data of a write to a read command in the same bank group (tWTR_L).", 0.0,
               10000.0),
-        choice(&DramParams::refresh, "refresh",
-               "Refresh of rows: none, of all banks at once, or of one bank after another.", &refresh_modes),
+        choice(
+            &DramParams::refresh, "refresh",
+            "Selects how rows are refreshed: not at all, in all banks at once, or in one bank after another.",
+            &refresh_modes),
         param(&DramParams::refi, "refi", "ns",
               "Time from a refresh of all banks, or of one bank, to its next refresh (tREFI).", 1.0, 1e6),
         param(&DramParams::rfc, "rfc", "ns", "Time from a refresh of all banks to an activate (tRFC).", 0.0,

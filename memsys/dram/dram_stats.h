@@ -60,11 +60,11 @@ struct DramStats {
   stats::Counter active_clocks{&group, "active_clocks", "clock",
                                "Number of command clocks in which a bank held a request or a timer ran."};
   stats::Counter bank_clocks{&group, "bank_clocks", "clock",
-                             "Sum over banks of the command clocks in which the bank held a request."};
+                             "Number of command clocks in which a bank held a request, summed over banks."};
   stats::Counter any_bank_clocks{&group, "any_bank_clocks", "clock",
                                  "Number of command clocks in which at least one bank held a request."};
   stats::Counter queue_clocks{&group, "queue_clocks", "clock",
-                              "Sum over requests of the clocks from the queue to the column command."};
+                              "Clocks from the queue to the column command, summed over requests."};
   stats::Breakdown<DramUse> use{&group, "use", "clock", "Number of command clocks, by what they went into."};
   stats::Histogram queue_latency{&group, "queue_latency", "clock", stats::linear(0, 1024, 16),
                                  "Clocks from the queue to the column command of a request."};
@@ -85,7 +85,7 @@ struct DramStats {
                                   picks,   "Mean clocks from the queue to the column command of a request."};
   stats::Value p99_queue_latency{&group, "p99_queue_latency", "clock", [this] { return p99(); },
                                  "Clocks from the queue to the column command that 99 % of requests did not "
-                                 "exceed: the upper end of the bin."};
+                                 "exceed, which is the upper end of a bin."};
   stats::Value activates_per_kb;
 
  private:

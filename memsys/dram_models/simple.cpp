@@ -17,7 +17,8 @@ class Simple final : public DramModel {
  public:
   static constexpr const char* kName = "simple";
   static constexpr const char* kDoc =
-      "A fixed latency and a share of the peak bandwidth, first come, first served; for fast sweeps.";
+      "Requests are served in the order of arrival, with a fixed latency and a share of the peak bandwidth. "
+      "It suits fast sweeps.";
   struct Params {
     double latency = 29.1;    // tRCD + CL of GDDR6-14000: a closed row
     double efficiency = 0.9;  // Choice: about what refresh and turnarounds leave to streams

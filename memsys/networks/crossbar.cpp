@@ -17,7 +17,8 @@ namespace {
 class Crossbar final : public Network {
  public:
   static constexpr const char* kName = "crossbar";
-  static constexpr const char* kDoc = "A switch that never blocks; ports and credits limit the traffic.";
+  static constexpr const char* kDoc =
+      "The network is a switch that never blocks. Ports and credits limit the traffic.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
     static constexpr auto params() { return std::tuple{}; }

@@ -246,7 +246,8 @@ class Mesh final : public Network {
  public:
   static constexpr const char* kName = "mesh";
   static constexpr const char* kDoc =
-      "A grid of routers with bounded buffers; the latency of a way depends on its hops and the load.";
+      "The network is a grid of routers with bounded buffers. The latency of a way depends on its hops and "
+      "the load.";
   using Params = MeshParams;
 
   Mesh(const MeshParams& params, const Context& context)
