@@ -55,8 +55,8 @@ class Registers {
 Inst inst_of(const OpRow& row) {
   Inst inst;
   int slot = 0;
-  Slot source = 0, destination = 44,
-       predicate = 0;  // not 4 KiB apart: loads behind stores at the same offset wait
+  // The slots are not 4 KiB apart, because loads behind stores at the same offset wait.
+  Slot source = 0, destination = 44, predicate = 0;
   for (const OperandKind kind : row.operands.view())
     for (const int end = slot + slots_of(kind); slot < end; ++slot) {
       const bool is_predicate = kind == OperandKind::DstPred || kind == OperandKind::SrcPred;

@@ -77,9 +77,12 @@ struct CodeCacheParams {
         param(&CodeCacheParams::ways, "ways", "way",
               "Number of lines per set. 0: the cache is fully associative.", 0, 4096),
         policy(&CodeCacheParams::replacement, "replacement",
-               "Selects the line of a set that makes way for a new line in this cache."),
+               "Selects the line of a set that makes way for a new line in the cache for instructions and "
+               "constants."),
         param(&CodeCacheParams::latency, "latency", "cycle",
-              "Cycles from a miss in the cache above to the line, when this cache has it.", 2, 1000)};
+              "Cycles from a miss in an instruction or constant cache to the line, when the cache behind "
+              "them has it.",
+              2, 1000)};
   }
 };
 

@@ -22,8 +22,9 @@ struct CodeStats : stats::Group {
   stats::Counter cache_reads{
       this, "cache_reads", "line",
       "Number of lines asked of the cache behind the instruction and constant caches."};
-  stats::Counter cache_misses{this, "cache_misses", "line",
-                              "Number of lines that this cache had to fetch from the L2."};
+  stats::Counter cache_misses{
+      this, "cache_misses", "line",
+      "Number of lines that the cache behind the instruction and constant caches had to fetch from the L2."};
 };
 
 }  // namespace glint::core

@@ -26,8 +26,8 @@ struct CoreCounts {
   void end(const IssueRow& row, uint64_t duration) { stats.add_latency(row.stage, row.klass, duration); }
 
   CoreStats stats;
-  std::vector<uint64_t> op_counts,
-      op_lanes;              // Warp instructions and lanes by op, indexed as isa::op_table().
+  // These count warp instructions and lanes by op, indexed as isa::op_table().
+  std::vector<uint64_t> op_counts, op_lanes;
   mem::Latencies latencies;  // cycles from issue to last sector of warp instructions that wait for memory
   std::unique_ptr<Profile> profile;  // counts by instruction; null: nobody has asked for them
   uint64_t progress = 0;             // grows whenever a warp makes progress

@@ -244,11 +244,11 @@ struct FenceParams {
   uint32_t acknowledgement = 0;  // an H200: 286; 0: stores are done when they have left their core
   static constexpr auto params() {
     return std::tuple{param(&FenceParams::block, "block", "cycle",
-                            "Cycles of membar.cta after the warp's last access.", 1, 60000),
+                            "Cycles that membar.cta takes after the warp's last access.", 1, 60000),
                       param(&FenceParams::gpu, "gpu", "cycle",
-                            "Cycles of membar.gl after the warp's last access.", 1, 60000),
+                            "Cycles that membar.gl takes after the warp's last access.", 1, 60000),
                       param(&FenceParams::system, "system", "cycle",
-                            "Cycles of membar.sys after the warp's last access.", 1, 60000),
+                            "Cycles that membar.sys takes after the warp's last access.", 1, 60000),
                       param(&FenceParams::acknowledgement, "acknowledgement", "cycle",
                             "Extra cycles of membar.gl after a store to global memory.", 0, 60000)};
   }

@@ -151,8 +151,8 @@ class Scheduler {
   std::array<Cycle, kMaxWarpsPerScheduler> ready_at_{};
   std::array<Stall, kMaxWarpsPerScheduler> wait_{};
   std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
-  uint64_t needs_lsu_ = 0, needs_tex_ = 0,
-           needs_rt_ = 0;                     // bit i: the next instruction of warp i enters that door
+  // Bit i of each tells whether the next instruction of warp i enters that door.
+  uint64_t needs_lsu_ = 0, needs_tex_ = 0, needs_rt_ = 0;
   std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
   std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
   std::array<Cycle, kNumPipes> pipe_busy_{};           // end of the pipe's work, in parts of a cycle

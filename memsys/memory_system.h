@@ -36,8 +36,8 @@ class MemorySystem {
   // Returns the longest window that the engine may use, at least 1: no message arrives sooner.
   Cycle shortest_latency() const { return network_->shortest_latency(); }
 
-  void finish(
-      Cycle end);  // attributes the cycles up to the end of the run: call once, before reading statistics
+  // Attributes the cycles up to the end of the run. It is called once, before statistics are read.
+  void finish(Cycle end);
   void check_drained()
       const;  // at the end of a run: every request was answered and nothing is left; aborts otherwise
 

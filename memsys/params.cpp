@@ -74,8 +74,8 @@ void check_dram(const DramParams& d, uint32_t line, uint32_t interleave, Checker
                         d.transfers_per_clock));
   c.require(d.banks <= 64, fmt::format("'dram.banks' is {}, expected at most 64", d.banks));
   const bool per_bank = d.refresh == "per_bank";
-  const double refresh =
-      (per_bank ? d.rfc_bank : d.rfc) + d.ras + d.rp;  // with the row that has just been opened
+  // The time includes the closing of a row that has just been opened.
+  const double refresh = (per_bank ? d.rfc_bank : d.rfc) + d.ras + d.rp;
   c.require(
       d.refresh == "none" || d.refi > refresh,
       fmt::format("'dram.refi' is {} ns, expected more than the {} ns of '{}', 'dram.ras' and 'dram.rp'",

@@ -36,8 +36,8 @@ constexpr std::string_view name_of(Stage stage) {
 // that long.
 struct Stamps {
   std::array<uint32_t, size_t(Stage::Count) - 1> end{};
-  uint32_t accepted =
-      0;  // when the L1 accepted an atomic; other reads wait in the L1, which knows their cycle
+  // Holds when the L1 accepted an atomic. Other reads wait in the L1, which knows their cycle.
+  uint32_t accepted = 0;
   void set(Stage stage, Cycle cycle) { end[size_t(stage)] = uint32_t(cycle); }
   // Lets all stages from `stage` up to the reply end at `cycle`, because the read goes no further down.
   void set_rest(Stage stage, Cycle cycle) { std::fill(end.begin() + int(stage), end.end(), uint32_t(cycle)); }

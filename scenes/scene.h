@@ -111,8 +111,8 @@ std::vector<Instance> instances_of(const Scene& scene);
 struct LoadOptions {
   std::string assets;       // folder of original data; empty: there is none
   bool instancing = false;  // models that are affine copies of an earlier one become instances of it
-  std::function<void(double fraction)> progress =
-      {};  // called while a scene is loaded or generated; may be empty
+  // It is called while a scene is loaded or generated, and may be empty.
+  std::function<void(double fraction)> progress = {};
 };
 
 struct SceneInfo {

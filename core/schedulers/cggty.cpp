@@ -16,8 +16,8 @@ class GreedyThenYoungest final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "cggty";
   static constexpr std::string_view kDoc =
-      "The warp issued last while it is ready, otherwise the youngest ready warp (compiler-guided greedy "
-      "then youngest).";
+      "A scheduler issues from the same warp as long as it is ready, and then from the youngest ready warp "
+      "(compiler-guided greedy then youngest).";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

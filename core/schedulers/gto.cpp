@@ -14,7 +14,8 @@ class GreedyThenOldest final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "gto";
   static constexpr std::string_view kDoc =
-      "The warp issued last while it is ready, otherwise the oldest ready warp (greedy then oldest).";
+      "A scheduler issues from the same warp as long as it is ready, and then from the oldest ready warp "
+      "(greedy then oldest).";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -13,7 +13,8 @@ class LooseRoundRobin final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "lrr";
   static constexpr std::string_view kDoc =
-      "The next ready warp after the one issued last (loose round robin).";
+      "A scheduler issues from the next ready warp after the one that it issued from last (loose round "
+      "robin).";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

@@ -12,7 +12,7 @@ namespace {
 class OldestFirst final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "oldest";
-  static constexpr std::string_view kDoc = "The ready warp that was launched first.";
+  static constexpr std::string_view kDoc = "A scheduler issues from the ready warp that was launched first.";
   struct Params {
     static constexpr auto params() { return std::tuple{}; }
   };

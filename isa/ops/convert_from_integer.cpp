@@ -60,8 +60,8 @@ struct Convert {
       const uint32_t exact = float_bits(float(int32_t(limited)));
       return narrowed(float_of(x < 0 ? exact | 0x8000'0000u : exact));
     } else {
-      // The number is rounded to odd by bits. An integer is no subnormal float, so the 29 bits that a float
-      // lacks may be gathered in one bit.
+      // The number is rounded to odd by bits. An integer is not a subnormal float, so the 29 bits that a
+      // float lacks may be gathered in one bit.
       const Reduced r = reduced(x);
       const uint64_t bits = double_bits(r.value), low = bits & 0x1fff'ffff;
       return narrowed(float(double_of((bits ^ low) | (low != 0 ? 0x2000'0000u : 0u))) * r.scale);

@@ -199,8 +199,8 @@ template <int kHalf, class F, class T>
 #if defined(__AVX512F__)
   static_assert(kHalf == 16);
   typedef T Row __attribute__((vector_size(64)));
-  constexpr __mmask8 kAll64 =
-      0xff;  // masked, because g++ 12 warns of its own unmasked forms (GCC bug 105593)
+  // The masked forms are used, because g++ 12 warns of its own unmasked forms (GCC bug 105593).
+  constexpr __mmask8 kAll64 = 0xff;
   constexpr __mmask16 kAll32 = 0xffff;
   const auto row = [](__m512i x) { return __builtin_bit_cast(Row, x); };
   const auto words = [](Row x) { return __builtin_bit_cast(__m512i, x); };

@@ -150,8 +150,8 @@ class L1Cache final : public L1Port {
   Latencies latencies_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
-  std::vector<uint8_t>
-      passing_;  // by MSHR: whether the cache does not keep the line (instructions, constants)
+  // Tells for each MSHR whether the cache does not keep the line (instructions, constants).
+  std::vector<uint8_t> passing_;
   LineTable seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;
@@ -161,8 +161,8 @@ class L1Cache final : public L1Port {
   Cycle filled_cycle_ = kNever;  // the cycle of the last fill, and its bank
   uint64_t filled_bank_ = 0;
   Cycle fill_not_before_ = 0;  // the earliest cycle of the next fill: there is one a cycle
-  bool fill_blocked_ =
-      false;  // a dirty victim found the miss queue full, so fills wait until a packet leaves
+  // Says that a dirty victim found the miss queue full, so that fills wait until a packet leaves.
+  bool fill_blocked_ = false;
   uint64_t order_ = 0;
   uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0,
            tokens_returned_ = 0;

@@ -63,8 +63,8 @@ HongKimResult hong_kim(const HongKimInputs& in) {
       in.bytes > 0 ? std::max(1.0, in.bandwidth / (in.bytes / latency * in.cores)) : in.warps;
   out.mwp = std::min({out.mwp_without_bandwidth, out.mwp_peak_bandwidth, in.warps});
   out.cwp = std::min((out.memory_cycles + out.computation_cycles) / out.computation_cycles, in.warps);
-  const double between =
-      out.computation_cycles / in.memory_instructions;  // computation between two memory instructions
+  // The computation between two memory instructions takes this number of cycles.
+  const double between = out.computation_cycles / in.memory_instructions;
   if (out.mwp == in.warps && out.cwp == in.warps) {
     out.equation = 22;
     out.cycles = out.memory_cycles + out.computation_cycles + between * (out.mwp - 1);

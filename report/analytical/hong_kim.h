@@ -21,8 +21,8 @@ struct HongKimInputs {
   // accesses.
   double memory_instructions = 0;
   double accesses = 0;  // L1 accesses of a memory instruction, which are the model's uncoalesced transactions
-  double dram_latency = 0,
-         miss_rate = 0;        // cycles from an L1 miss to its data; fraction of L1 reads that miss
+  // These are the cycles from an L1 miss to its data, and the fraction of L1 reads that miss.
+  double dram_latency = 0, miss_rate = 0;
   double departure_delay = 0;  // cycles between two accesses of a core
   double issue_cycles = 0;     // cycles of a core for a warp instruction
   // DRAM bytes of a memory instruction. Choice: only misses count; the paper adjusts only the latency.

@@ -104,9 +104,9 @@ class Search {
   }
 
   std::vector<Individual> next_generation(const std::vector<Individual>& island) {
-    std::vector<Individual> out(
-        island.begin(),
-        island.begin() + std::min<std::ptrdiff_t>(2, std::ssize(island)));  // the two best stay
+    // The two best stay.
+    std::vector<Individual> out(island.begin(),
+                                island.begin() + std::min<std::ptrdiff_t>(2, std::ssize(island)));
     while (out.size() < island.size()) out.push_back(child(parent(island), parent(island)));
     std::ranges::sort(out, is_better);
     // Twins are replaced by newcomers, because otherwise an island soon holds one set many times.

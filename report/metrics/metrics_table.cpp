@@ -39,7 +39,9 @@ constexpr Metric kGpu[] = {
      "sum(l2.reply_bytes) / sum(gpu.cycles) * config(clock_mhz) / 1000", ""},
     {"w_icount", "warp instruction", "Number of warp instructions issued.", "sum(core.instructions)",
      "Fig. 8 (top)"},
-    {"thrd_icount", "lane instruction", "Equal to insn, because Vulkan-Sim has two names for this number.",
+    {"thrd_icount", "lane instruction",
+     "Number of instructions that lanes executed. It is equal to insn, because Vulkan-Sim has two names for "
+     "this number.",
      "sum(core.lane_instructions)", ""},
     {"shd_mem_stalls", "cycle",
      "Scheduler cycles in which an instruction was ready but the memory queue was full.",
@@ -126,7 +128,7 @@ constexpr Metric kRtUnit[] = {
      "Number of write requests of the RT units, for results and tables of candidates.",
      "sum(rt.result_writes) + sum(rt.table_writes)", "Table 3"},
     {"rt_store_q_max", "request", "Largest number of requests in the store queue.", "", kNoStoreQueue},
-    {"rt_store_cycles", "cycle", "Mean cycles of a store in the queue.", "", kNoStoreQueue},
+    {"rt_store_cycles", "cycle", "Mean cycles that a store is in the store queue.", "", kNoStoreQueue},
     {"rt_op_intensity", "lane cycle/request", "Lane cycles in tests (intersection_stages) per read request.",
      "(sum(rt.internal_nodes) * config(rt.box.latency) + sum(rt.procedural_leaves) * config(rt.box.latency) "
      "+ sum(rt.triangle_tests) * config(rt.triangle.latency) + sum(rt.instance_leaves) * "

@@ -34,8 +34,8 @@ class RestartTrail final : public StackModel {
     StackWork work;
     if (!state.path || has_left_stack(state)) forgotten = 0;
     if (forgotten > 0 && state.stack_size <= forgotten) {
-      const int sought =
-          state.stack_size > 0 ? state.stack_size : forgotten;  // The newest of these entries is sought.
+      // The newest of these entries is sought.
+      const int sought = state.stack_size > 0 ? state.stack_size : forgotten;
       work.replays = uint16_t(state.path->parent[size_t(sought) - 1] + 1);
       forgotten = 0;
     }

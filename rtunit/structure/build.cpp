@@ -159,8 +159,8 @@ void measure(const BuildTree& tree, const Leaves& leaves, StructureInfo& info) {
   for (size_t n = tree.nodes.size(); n-- > 0;) {
     const BuildTree::Node& node = tree.nodes[n];
     if (node.kind != NodeKind::Internal) {
-      need[n] =
-          std::max(need_of_block[node.leaf_block], 1u);  // 1: the leaf comes again for its second triangle
+      // A leaf needs at least one entry, because it comes again for its second triangle.
+      need[n] = std::max(need_of_block[node.leaf_block], 1u);
       ++info.leaves;
       continue;
     }

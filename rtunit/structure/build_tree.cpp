@@ -119,8 +119,8 @@ void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tre
   const RTCBVH bvh = rtcNewBVH(device);
   std::vector<RTCBuildPrimitive> primitives = primitives_of(items);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.buildQuality =
-      RTC_BUILD_QUALITY_MEDIUM;          // binned SAH without spatial splits: each primitive once
+  // The builder uses a binned SAH without spatial splits, so it places each primitive once.
+  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
   arguments.maxBranchingFactor = width;  // opens the child of largest area until the node is full
   arguments.maxDepth = kMaxDepth;
   arguments.maxLeafSize = 1;

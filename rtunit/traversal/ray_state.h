@@ -39,16 +39,16 @@ struct RayState {
   uint32_t instance_flags = 0, instance_custom_index = 0, instance_sbt_record = 0;
   int16_t stack_size = 0, bottom_stack_base = -1;  // Entries below bottom_stack_base belong to the top level.
   int16_t stack_peak = 0;
-  int16_t stack_off_chip =
-      0;                   // entries at the bottom that the RT unit does not hold; the stack model sets it
+  // The RT unit does not hold this number of entries at the bottom. The stack model sets it.
+  int16_t stack_off_chip = 0;
   uint8_t format = 0;      // FormatId of the structure
   uint8_t node_bytes = 0;  // of its internal nodes
 
   // The traversal counts these for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0, leaves_visited = 0, instances_visited = 0;
   uint64_t unit_cycles = 0;  // in the RT unit, all stays together; the unit sets it from the first stay on
-  uint32_t hits_in_interval =
-      0;  // triangles met within the ray's interval, whether nearer than the hit so far or not
+  // Counts triangles met within the ray's interval, whether nearer than the hit so far or not.
+  uint32_t hits_in_interval = 0;
 
   RayStack stack;  // Entries below stack_size mean something.
 };

@@ -18,8 +18,9 @@ struct NameRule {
 };
 
 struct FolderRules {
-  std::vector<std::string>
-      folders;  // candidates below the assets folder; its own name is one, for the folder itself
+  // These are candidates below the assets folder. The folder's own name is one, which means the folder
+  // itself.
+  std::vector<std::string> folders;
   bool textures = false;
   float scale = 1;                    // scales every position about the origin
   std::string skip = {};              // files whose name contains this are left out; empty: no file is

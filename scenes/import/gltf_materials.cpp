@@ -35,9 +35,9 @@ class MaterialReader {
     // Model: an emissive texture counts as if it were white.
     if (e.size() == 3 && e[0] + e[1] + e[2] > 0)
       return diffuse_light(float(e[0]) * strength, float(e[1]) * strength, float(e[2]) * strength);
+    // The extension's default index of refraction is 1.5.
     if (number_of(m, "KHR_materials_transmission", "transmissionFactor", 0) > 0.5)
-      return dielectric(
-          float(number_of(m, "KHR_materials_ior", "ior", 1.5)));  // 1.5: the extension's default
+      return dielectric(float(number_of(m, "KHR_materials_ior", "ior", 1.5)));
     const auto [metal, roughness] = metal_and_roughness(pbr);
     // Model: a surface is all metal or not metal at all, and a metal's lobe is a ball whose radius is its
     // roughness.
@@ -91,8 +91,8 @@ class MaterialReader {
 
   Scene& scene_;
   const tinygltf::Model& file_;
-  std::map<std::tuple<int, double, double>, int32_t>
-      known_;  // texture, cutoff, alpha factor -> index in the scene
+  // Maps texture, cutoff and alpha factor to the index in the scene.
+  std::map<std::tuple<int, double, double>, int32_t> known_;
 };
 
 }  // namespace
@@ -105,8 +105,8 @@ std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& fil
     scene.materials.push_back(material);
   };
   for (const tinygltf::Material& m : file.materials) add(reader.read(m));
-  add(lambertian(0.7f, 0.7f,
-                 0.7f));  // Choice: grey, as for OBJ files without a library; glTF's default is white
+  // Choice: a mesh without a material is grey, as in OBJ files without a library; glTF's default is white.
+  add(lambertian(0.7f, 0.7f, 0.7f));
   return indices;
 }
 

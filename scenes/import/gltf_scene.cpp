@@ -95,8 +95,9 @@ class Nodes {
   }
 
  private:
-  static constexpr float kLampSize =
-      0.05f;  // of the scene's extent. Choice: paths find a lamp by chance, so it is large
+  // The lamp's radius is this share of the scene's extent. Choice: paths find a lamp by chance, so it is
+  // large.
+  static constexpr float kLampSize = 0.05f;
   static constexpr float kLampColor = 15;  // as the lamps of LumiBench's scenes
 
   uint32_t model_of(int mesh) {

@@ -9,8 +9,8 @@
 namespace glint::app {
 namespace {
 
-constexpr const char* kClassTitles[] = {"ALU", "SFU",  "Mem",
-                                        "Tex", "Ctrl", "RT"};  // names in the order of isa::Class
+// The names are in the order of isa::Class.
+constexpr const char* kClassTitles[] = {"ALU", "SFU", "Mem", "Tex", "Ctrl", "RT"};
 static_assert(std::size(kClassTitles) == size_t(isa::Class::Count));
 
 // Sums statistics over all instances.
