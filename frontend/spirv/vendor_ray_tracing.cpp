@@ -38,8 +38,8 @@ class Rewriter {
       if (op == spv::Op::OpCapability && words_[at + 1] == uint32_t(spv::Capability::RayTracingNV))
         append(out, spv::Op::OpCapability, {uint32_t(spv::Capability::RayTracingKHR)});
       if (op == spv::Op::OpExtension && !has_extension_) {
-        append(out, spv::Op::OpExtension,
-               {0x5f56'5053, 0x5f52'484b, 0x5f79'6172, 0x6361'7274, 0x0067'6e69});  // "SPV_KHR_ray_tracing"
+        // The words spell "SPV_KHR_ray_tracing".
+        append(out, spv::Op::OpExtension, {0x5f56'5053, 0x5f52'484b, 0x5f79'6172, 0x6361'7274, 0x0067'6e69});
         has_extension_ = true;
       }
       if (!calls && op != spv::Op::OpTraceNV && op != spv::Op::OpTraceMotionNV) return;

@@ -61,8 +61,8 @@ void room(Model& model, int32_t wood, int32_t light, int32_t mirror, int32_t wal
                        {0, 0, deep / 80},
                        {-12.75f + 8.5f * float(board), -0.1f, kBack + deep * (float(row) + 0.5f) / 40}},
                       150, wood, 0.1f);
-  add_quad(model, {-kX, -0.1f, kBack}, {0, 0, deep}, {2 * kX, 0, 0},
-           wood);  // below them: their corners are round
+  // A quad lies below the boards, because their corners are round.
+  add_quad(model, {-kX, -0.1f, kBack}, {0, 0, deep}, {2 * kX, 0, 0}, wood);
   add_patch(model, 3000, 1, wall, [=](float u, float v) -> Vec3 {
     return {kX * (2 * u - 1), kY * v, kBack};
   });

@@ -64,8 +64,8 @@ struct Fair {
       const double angle = 2 * kPi * k / 16;
       const Vec3 place = foot + Vec3{size * 0.8f * cosine(angle), 26, size * 0.8f * sine(angle)};
       add_cable(model, place + Vec3{0, -20, 0}, place + Vec3{0, 40, 0}, 0, 1, 300, color(8));
-      add_ball(model, upright(place, {5, 6, 12}, float(k) * -22.5f), 2600, color(9 + k), 0.25f,
-               1.5f);  // a horse's body
+      // This ball is a horse's body.
+      add_ball(model, upright(place, {5, 6, 12}, float(k) * -22.5f), 2600, color(9 + k), 0.25f, 1.5f);
       add_ball(model, upright(place + Vec3{0, 8, 0}, {3, 6, 4}), 900, color(9 + k), 0.2f, 2);
     }
   }

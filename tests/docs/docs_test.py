@@ -178,7 +178,7 @@ class Policy(DocsTest):
             if block.kind == "shell":
                 self.shell(where, block.text, block.place)
         out = subprocess.run([where / "glint-youngest", "list", "policies"], capture_output=True, text=True, check=True).stdout
-        self.assertRegex(out, r"core\.issue +youngest +The ready warp that was launched last")
+        self.assertRegex(out, r"core\.issue +youngest +A scheduler issues from the ready warp that was launched last")
         self.assertIn('issue = "youngest"', (where / "out/youngest/config.toml").read_text())
 
 

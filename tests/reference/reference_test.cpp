@@ -32,9 +32,9 @@ TEST_CASE("the generator and the hash have their known values") {
   uint32_t state = 1;
   CHECK(random_float(state) == float(1015568748u & 0xffffffu) / 16777216.0f);  // 1664525 + 1013904223
   CHECK(state == 1015568748u);
-  CHECK(random_float(state) ==
-        float(1586005467u & 0xffffffu) / 16777216.0f);  // Numerical Recipes' third value
-  CHECK(hash_pair(0, 0) == 0x741c187du);                // computed once with arbitrary-precision integers
+  // Numerical Recipes has this third value.
+  CHECK(random_float(state) == float(1586005467u & 0xffffffu) / 16777216.0f);
+  CHECK(hash_pair(0, 0) == 0x741c187du);  // computed once with arbitrary-precision integers
   CHECK(hash_pair(5, 7) == 0x697193aeu);
 }
 

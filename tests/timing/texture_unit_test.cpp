@@ -121,8 +121,8 @@ TEST_CASE("a fetch is a sample a lane, and one between two levels is two") {
   };
 
   const Cycle plain = cycles("tex.level.2d.v4.f32.f32", 0, kAllLanes);
-  CHECK(cycles("tex.level.2d.v4.f32.f32", 4, kAllLanes) ==
-        plain + 64 / 4 - 1);  // half way between levels: 8 texels a lane
+  // Half way between levels, each lane has 8 texels.
+  CHECK(cycles("tex.level.2d.v4.f32.f32", 4, kAllLanes) == plain + 64 / 4 - 1);
   CHECK(cycles("tex.level.2d.v4.f32.f32", 8, kAllLanes) == plain + 64 / 8 - 1);
   CHECK(cycles("tex.level.2d.v4.f32.f32", 4, 0xff) == plain + 16 / 4 - 1);
 }

@@ -19,8 +19,8 @@ constexpr int kMostDepth = 5;
 struct Place {
   int depth = 0;
   bool in_loop = false, switch_is_nearer = false, in_continue = false;
-  bool may_leave = false,
-       may_fall = false;         // it is directly in a branch of an `if`, or in a case with a next one
+  // The place is directly in a branch of an `if` (may_leave), or in a case with a next one (may_fall).
+  bool may_leave = false, may_fall = false;
   bool is_uniform = false;       // all lanes of the group come here together
   bool loop_is_uniform = false;  // the loop has exchanges, so no lane may leave it alone
 };

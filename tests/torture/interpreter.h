@@ -80,8 +80,8 @@ class Interpreter {
   bool step_composite(Invocation& lane, const Decoded& inst) const;
   void enter_block(Invocation& lane, Id label) const;
   uint64_t run_group(std::vector<Invocation>& lanes, uint64_t most_steps) const;
-  uint32_t first_scalar(Id* type,
-                        uint32_t index) const;  // first scalar of a member; *type becomes the member's type
+  // Returns the first scalar of a member. *type becomes the member's type.
+  uint32_t first_scalar(Id* type, uint32_t index) const;
   Value builtin(const Invocation& lane, spv::BuiltIn what) const;
 
   uint32_t bound_ = 0;

@@ -74,8 +74,8 @@ Exact exact_sphere(const Double3& o, const Double3& d, const std::array<float, 4
   const Double3 oc = sub(o, {sphere[0], sphere[1], sphere[2]});
   const double a = dot(d, d), b = dot(oc, d), c = dot(oc, oc) - double(sphere[3]) * double(sphere[3]);
   const double discriminant = b * b - a * c;
-  const double slope =
-      std::sqrt(std::fabs(discriminant)) / (std::sqrt(a) * double(sphere[3]));  // 1: through the centre
+  // The slope is 1 where the ray goes through the centre.
+  const double slope = std::sqrt(std::fabs(discriminant)) / (std::sqrt(a) * double(sphere[3]));
   if (discriminant < 0) return {false, -b / a, -b / a, 0, 0, slope, 0, 0};
   Exact out{true, (-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a, 0, 0, slope, 0, 0};
   // The shader takes a product from a square, and what is lost there moves the root.

@@ -86,8 +86,8 @@ class Oracle {
 };
 
 struct Comparison {
-  uint32_t hits = 0, misses = 0, same = 0, decided = 0,
-           wrong = 0;  // decided: they differ, and exact arithmetic finds no fault
+  // A ray is decided when the results differ and exact arithmetic finds no fault.
+  uint32_t hits = 0, misses = 0, same = 0, decided = 0, wrong = 0;
 };
 
 // Holds the hit of one triangle in double precision, and how far float rounding may move it. `blur` grows for

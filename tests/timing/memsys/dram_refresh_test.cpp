@@ -38,8 +38,8 @@ TEST_CASE("a request that comes while all banks refresh waits until exactly the 
 
 TEST_CASE("a refresh waits for an open row to be closed, and no longer") {
   DramRig rig(refreshed("all_bank"));
-  rig.add(980 - kEdge, 0, 1, false,
-          1);  // activate at 980: closed at 1010 at the earliest, refreshed from 1026 on
+  // The row is activated at 980, is closed at 1010 at the earliest, and is refreshed from 1026 on.
+  rig.add(980 - kEdge, 0, 1, false, 1);
   rig.add(1100, 5, 1, false, 2);
   CHECK(rig.run()[2] == 980 + 30 + 16 + 200 + 15 + 14 + kData);
   CHECK(rig.channel.stats().refreshes.value() == 1);

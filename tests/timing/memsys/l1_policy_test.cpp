@@ -117,8 +117,8 @@ TEST_CASE("a write allocates the sectors it covers when asked to, and no others"
     Params params = bare();
     params.l1.write_allocate = allocate;
     MemoryRig rig(params);
-    REQUIRE(rig.l1().access(0, Client::Lsu,
-                            write(0, 0b0011, Traffic::ShaderGlobal, 0x0fff)));  // half of sector 1
+    // The write covers half of sector 1.
+    REQUIRE(rig.l1().access(0, Client::Lsu, write(0, 0b0011, Traffic::ShaderGlobal, 0x0fff)));
     rig.drain();
     CHECK(rig.l1().packets_sent() == 1);  // written through all the same
     CHECK(rig.read_latency(0, 0b0001) == (allocate ? params.l1.hit_latency : kL2Hit));

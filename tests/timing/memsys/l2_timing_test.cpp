@@ -137,8 +137,8 @@ TEST_CASE("a sector written in part is fetched when it is read, and only then") 
   Params params = bare();
   params.l2.write_masks = true;
   MemoryRig rig(params);
-  REQUIRE(rig.l1().access(rig.now(), Client::Lsu,
-                          write(kLine, 0b0011, 0x0000'0fff)));  // sector 0 whole, half of sector 1
+  // The write covers sector 0 whole, and half of sector 1.
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 0b0011, 0x0000'0fff)));
   rig.drain();
   CHECK(dram_reads(rig) == 0);
   CHECK(slice_of(rig, kLine).partial_writes.value() == 1);

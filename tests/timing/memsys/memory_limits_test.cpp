@@ -205,11 +205,11 @@ TEST_CASE("the L1 times hits, misses, merged reads and atomics, each under its c
   rig.read_latency(kLine, 1, true);
   const Cycle start = rig.now();
   REQUIRE(rig.l1().access(start, Client::Lsu, read(kLine, 1)));
-  REQUIRE(rig.l1().access(start + 10, Client::Lsu,
-                          request(kLine, 1, 2, false, Traffic::ShaderGlobal)));  // merges
+  // This read merges.
+  REQUIRE(rig.l1().access(start + 10, Client::Lsu, request(kLine, 1, 2, false, Traffic::ShaderGlobal)));
   rig.drain();
-  REQUIRE(
-      rig.l1().access(rig.now(), Client::Lsu, request(kLine, 1, 3, false, Traffic::ShaderLocal)));  // hits
+  // This read hits.
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, request(kLine, 1, 3, false, Traffic::ShaderLocal)));
   rig.drain();
   REQUIRE(rig.l1().access(rig.now(), Client::Lsu, atomic(kLine, 4)));
   rig.drain();

@@ -115,8 +115,8 @@ TEST_CASE("SPIR-V text becomes the newest version under which it is valid") {
   const std::string place =
       "OpMemberDecorate %block 0 Offset 0\nOpDecorate %b DescriptorSet 0\nOpDecorate %b Binding 0\n";
   CHECK(assemble_spirv(start + "OpDecorate %block Block\n" + place + types + body, "x")[1] == 0x00010600);
-  const auto old = assemble_spirv(start + "OpDecorate %block BufferBlock\n" + place + types + body,
-                                  "x");  // version 1.4 removed it
+  // SPIR-V 1.4 removed BufferBlock.
+  const auto old = assemble_spirv(start + "OpDecorate %block BufferBlock\n" + place + types + body, "x");
   CHECK(old[1] == 0x00010300);
   CHECK(validate_spirv(old).empty());
   CHECK_THROWS_AS(assemble_spirv("OpNonsense\n", "x"), UserError);

@@ -43,8 +43,8 @@ constexpr Expected kBuiltIn[] = {{"SPNZA", 1, 24, 262'267, 99, 100, 0x3a6b0fd54c
                                  {"CAR", 302, 244, 12'700'000, 55, 80, 0x30f847318d21ff0d},
                                  {"ROBOT", 248, 0, 20'600'000, 45, 70, 0x51baddf7e4c15ec6}};
 
-constexpr double kQuick =
-    2e6;  // triangles; larger scenes only with GLINT_LARGE_SCENES, they take seconds and gigabytes
+// Scenes with more triangles are made only with GLINT_LARGE_SCENES, because they take seconds and gigabytes.
+constexpr double kQuick = 2e6;
 
 reference::Ray primary_ray(const Camera& camera, float x, float y) {
   const Vec3 forward = normalized(camera.target - camera.eye), right = normalized(cross(forward, camera.up));

@@ -38,8 +38,8 @@ std::vector<std::string> published_spheres() {
 
 TEST_CASE("uniform_float gives libstdc++'s floats for seed 42") {
   std::mt19937 engine(42);
-  CHECK(uniform_float(engine) ==
-        float(1608637542u) / 4294967296.0f);  // the engine's first two outputs for this seed
+  // The engine's first two outputs for this seed are these.
+  CHECK(uniform_float(engine) == float(1608637542u) / 4294967296.0f);
   CHECK(uniform_float(engine) == float(3421126067u) / 4294967296.0f);
 }
 
