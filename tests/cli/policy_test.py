@@ -65,10 +65,14 @@ class Plugin(GlintTest):
         subprocess.run([sys.executable, ROOT / "tools/new_policy.py", "core.issue", name, "--plugin", folder], check=True, capture_output=True)
         if source:
             (folder / f"{name}.cpp").write_text(source)
-        for command in (["cmake", "-S", folder, "-B", folder / "build", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={self.prefix}"], ["cmake", "--build", folder / "build"]):
+        return self.configure_and_build(folder) / f"{name}.so"
+
+    def configure_and_build(self, folder):
+        build = folder / "build"
+        for command in (["cmake", "-S", folder, "-B", build, "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={self.prefix}"], ["cmake", "--build", build]):
             done = subprocess.run(command, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return folder / f"build/{name}.so"
+        return build
 
     def installed(self, *words, **environment):
         return subprocess.run([self.prefix / "bin/glint", *words], capture_output=True, text=True, cwd=self.folder, env=os.environ | environment)
@@ -86,6 +90,17 @@ class Plugin(GlintTest):
         suite = ["bench", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", "core.issue=youngest", "--out", "suite", "--plugin", plugin]
         self.assertEqual(self.installed(*suite).returncode, 0)
         self.assertIn("1 of them complete", self.installed(*suite, "--resume").stdout + self.installed(*suite, "--resume").stderr)
+
+    def test_a_program_can_embed_the_libraries(self):
+        folder = self.folder / "embed"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(embed LANGUAGES CXX)\nfind_package(glint REQUIRED)\n"
+                                               "add_executable(embed main.cpp)\ntarget_link_libraries(embed PRIVATE glint::pipeline)\n")
+        (folder / "main.cpp").write_text('#include <cstdio>\n#include "base/policy_kinds.h"\n#include "pipeline/render.h"\nint main() {\n'
+                                         '  std::printf("%d %zu", int(glint::scenes::load_scene("CORNELL", {}).triangles()), glint::all_policies().size());\n}\n')
+        triangles, policies = subprocess.run([self.configure_and_build(folder) / "embed"], capture_output=True, text=True, check=True).stdout.split()
+        self.assertEqual(triangles, "12")
+        self.assertGreater(int(policies), 30)
 
     def test_a_copied_policy_costs_the_same_as_its_original(self):
         plugin = self.build("mine")
