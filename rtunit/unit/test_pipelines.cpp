@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/num_lanes.h"
+
 namespace glint::rt {
 
 TestPipelines::TestPipelines(const Params& params, const mem::AddressSpace& memory, RayWalk& walk)
@@ -21,6 +23,7 @@ Pipe TestPipelines::add(const PipelineParams& params) {
 
 void TestPipelines::push(const Read& read, uint32_t slot, LaneMask lanes) {
   const uint8_t starts = starts_of(read);
+  num_waiting_ += num_lanes(lanes);
   for_each_lane(lanes, [&](int lane) { pipes_[read.pipe].waiting.push({slot, uint8_t(lane), starts}); });
 }
 
@@ -36,6 +39,7 @@ void TestPipelines::finish_tests(Cycle now) {
     while (!pipe.running.empty() && pipe.running.front().ready <= now) {
       const Running done = pipe.running.front();
       pipe.running.pop();
+      --num_running_;
       walk_.end_test(done.slot, done.lane, now);
     }
 }
@@ -54,6 +58,8 @@ void TestPipelines::start_tests(Cycle now) {
       walk_.start_test(test.slot, test.lane, now);
       pipe.running.push({now + pipe.params.latency, test.slot, test.lane});
       pipe.waiting.pop();
+      --num_waiting_;
+      ++num_running_;
     }
   }
 }
@@ -65,13 +71,6 @@ Cycle TestPipelines::next_event() const {
     if (!pipe.waiting.empty()) next = std::min(next, pipe.interval_start + pipe.params.interval);
   }
   return next;
-}
-
-bool TestPipelines::is_any_waiting() const {
-  return std::any_of(pipes_.begin(), pipes_.end(), [](const Pipeline& p) { return !p.waiting.empty(); });
-}
-bool TestPipelines::is_any_running() const {
-  return std::any_of(pipes_.begin(), pipes_.end(), [](const Pipeline& p) { return !p.running.empty(); });
 }
 
 }  // namespace glint::rt

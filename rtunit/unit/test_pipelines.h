@@ -24,8 +24,8 @@ class TestPipelines {
   void start_tests(Cycle now);
   Cycle next_event() const;
 
-  bool is_any_waiting() const;
-  bool is_any_running() const;
+  bool is_any_waiting() const { return num_waiting_ != 0; }
+  bool is_any_running() const { return num_running_ != 0; }
   size_t num_tests(Pipe pipe) const { return pipes_[pipe].waiting.size() + pipes_[pipe].running.size(); }
 
  private:
@@ -53,7 +53,8 @@ class TestPipelines {
   const size_t num_lanes_;
   const mem::AddressSpace& memory_;
   RayWalk& walk_;
-  std::vector<Pipeline> pipes_;  // by Pipe
+  std::vector<Pipeline> pipes_;                 // by Pipe
+  uint32_t num_waiting_ = 0, num_running_ = 0;  // tests in all pipelines
 };
 
 }  // namespace glint::rt
