@@ -76,7 +76,7 @@ double nanoseconds(const OpRow& row, Registers& registers) {
   int calls = 64;
   for (int run = 0; run < 12; ++run) {
     const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < calls; ++i) row.run(warp, inst);
+    for (int i = 0; i < calls; ++i) row.run(warp, inst, row);
     const double ns =
         std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
     best = std::min(best, ns / calls);

@@ -58,7 +58,7 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
 
   bool ok = true;
   if (row.effect == Effect::None) {
-    row.run(warp.regs, inst);
+    row.run(warp.regs, inst, row);
     ++warp.simt.pc;
   } else {
     ok = dispatch(warp, inst, row);

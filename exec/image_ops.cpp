@@ -9,7 +9,7 @@ namespace glint::exec {
 using isa::ImageRequest;
 
 bool ImageOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  row.run(warp.regs, inst);
+  row.run(warp.regs, inst, row);
   texels_.clear();
   seen_.begin_access();
   bool ok = false;

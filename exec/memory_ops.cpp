@@ -43,7 +43,7 @@ std::string outside_of(std::string_view object, Address address, uint64_t bytes,
 }  // namespace
 
 bool MemoryOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  row.run(warp.regs, inst);
+  row.run(warp.regs, inst, row);
   lanes_in_.fill(0);
   seen_.begin_access();
   const LaneMask exec = warp.regs.exec;

@@ -190,17 +190,17 @@ template <class Test>
 // Calls `run` as if all lanes executed, and then gives the other lanes of the destination their old values
 // back. Handlers share this function, so each of them has code for a full warp only.
 template <int kRows>
-[[gnu::noinline]] void run_some_lanes(Warp& warp, const Inst& inst, Handler run) {
+[[gnu::noinline]] void run_some_lanes(Warp& warp, const Inst& inst, const OpRow& row, Handler run) {
   const LaneMask exec = warp.exec;
   const auto predicates = warp.predicate;
-  uint32_t* const row = warp.bank[0] + inst.operand.front() * kLanes;
+  uint32_t* const out = warp.bank[0] + inst.operand.front() * kLanes;
   alignas(64) uint32_t old[kRows * kLanes];
-  __builtin_memcpy(old, row, sizeof old);
+  __builtin_memcpy(old, out, sizeof old);
   warp.exec = kAllLanes;
-  run(warp, inst);
+  run(warp, inst, row);
   warp.exec = exec;
   for (int first = 0; first < kRows * kLanes; first += kLanes)
-    all_lanes([&](int i) { row[first + i] = (exec & kLaneBit[i]) != 0 ? row[first + i] : old[first + i]; });
+    all_lanes([&](int i) { out[first + i] = (exec & kLaneBit[i]) != 0 ? out[first + i] : old[first + i]; });
   for (size_t p = 0; p < predicates.size(); ++p)
     warp.predicate[p] = (warp.predicate[p] & exec) | (predicates[p] & ~exec);
 }
@@ -208,17 +208,18 @@ template <int kRows>
 // Tells whether lanes are missing. If so, it has called `run` for the lanes that execute. R is the type of
 // the first destination.
 template <class R>
-[[gnu::always_inline]] inline bool ran_some_lanes(Warp& warp, const Inst& inst, Handler run) {
+[[gnu::always_inline]] inline bool ran_some_lanes(Warp& warp, const Inst& inst, const OpRow& row,
+                                                  Handler run) {
   if (warp.exec == kAllLanes) [[likely]]
     return false;
-  run_some_lanes<sizeof(R) == 8 ? 2 : 1>(warp, inst, run);
+  run_some_lanes<sizeof(R) == 8 ? 2 : 1>(warp, inst, row, run);
   return true;
 }
 
 // Handles a value op: applies F to the sources of types A... lane by lane. F's result type is the
 // destination: bool a predicate, 8 bytes a register pair, 4 bytes a register.
 template <class F, class... A>
-[[gnu::flatten, gnu::noinline]] void run_value(Warp& warp, const Inst& inst) {
+[[gnu::flatten, gnu::noinline]] void run_value(Warp& warp, const Inst& inst, const OpRow& row) {
   using R = decltype(F{}(A{}...));
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
@@ -226,7 +227,7 @@ template <class F, class... A>
     const auto value = [&](int i) { return F{}(std::get<N>(source).at(i)...); };
     if constexpr (std::is_same_v<R, bool>)
       write_predicate(warp, slot[0], mask_of(value));
-    else if (!ran_some_lanes<R>(warp, inst, &run_value<F, A...>))
+    else if (!ran_some_lanes<R>(warp, inst, row, &run_value<F, A...>))
       write_all_lanes<R>(warp, slot[0], value);
   }
   (std::index_sequence_for<A...>{});
@@ -235,9 +236,9 @@ template <class F, class... A>
 // Does the same for an F that gives Two<R, bool>. Either destination may be a source, so the predicate is a
 // mask until the other result is written.
 template <class F, class... A>
-[[gnu::flatten]] void run_two_values(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void run_two_values(Warp& warp, const Inst& inst, const OpRow& row) {
   using R = decltype(F{}(A{}...).first);
-  if (ran_some_lanes<R>(warp, inst, &run_two_values<F, A...>)) return;
+  if (ran_some_lanes<R>(warp, inst, row, &run_two_values<F, A...>)) return;
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 2])...};
@@ -307,7 +308,7 @@ constexpr OpRow ternary(std::string_view name, Unit unit, std::string_view doc, 
 }
 
 // Handler of an op that is all effect: the machine does everything.
-void run_nothing(Warp& warp, const Inst& inst);
+void run_nothing(Warp& warp, const Inst& inst, const OpRow& row);
 
 constexpr OpRow effect_op(std::string_view name, Class klass, Unit unit, Effect effect, Operands operands,
                           std::string_view doc) {

@@ -173,8 +173,11 @@ struct Memory {
   bool sign_extend = false;
 };
 
-// Runs one instruction for the lanes of `warp.exec`. Other lanes keep their values.
-using Handler = void (*)(Warp& warp, const Inst& inst);
+struct OpRow;
+
+// Runs one instruction for the lanes of `warp.exec`. Other lanes keep their values. `row` is the
+// instruction's row: a handler of several rows reads there which of them it runs (OpRow::detail).
+using Handler = void (*)(Warp& warp, const Inst& inst, const OpRow& row);
 
 // Returns what an atomic op makes of the old bits in memory and its operands `b` and `c`. An op without a
 // second operand gets in `c` whether the place is in global memory, whose adders differ. It runs one lane at
@@ -207,7 +210,7 @@ struct OpRow {
   Memory memory;
   ImageAccess image;                // of texture and surface ops
   AtomicFunction atomic = nullptr;  // of Effect::Atomic and SurfaceAtomic
-  // Says which op of its family a row is, where one effect serves many rows (isa/ray_query.h).
+  // Says which op of its family a row is, where one effect or one handler serves many rows (isa/ray_query.h).
   uint16_t detail = 0;
   Handler run = nullptr;  // never null; an op that is only an effect has an empty handler
   std::string_view doc;   // one sentence, for docs/isa.md and `glint isa add.s32`

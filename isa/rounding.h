@@ -22,6 +22,13 @@ enum class Round : uint8_t { Nearest = 0, Down = 1, Up = 2, Zero = 3 };
 template <Round kRound>
 inline constexpr int kStaticRound = int(kRound) | 8;  // _MM_FROUND_NO_EXC
 
+// Returns the mode of a row, which is its detail, as MXCSR has it. Flushing means that single and double
+// subnormals of sources and results become zeros of their sign (MXCSR's DAZ and FTZ; a result counts as
+// subnormal by its size after rounding with an unbounded exponent, as with PTX's .ftz).
+constexpr uint16_t mode_bits(Round round, bool ftz) {
+  return uint16_t(uint32_t(round) << 13 | (ftz ? 0x8040u : 0u));
+}
+
 // Does the arithmetic of a lane and finishes it.
 template <class Work, class F>
 struct Finished {
@@ -64,9 +71,9 @@ template <class Work, Round kRound, class... Vector>
 }
 
 template <Round kRound, bool kFtz, class Work, class F, class... A>
-[[gnu::flatten]] void run_rounded(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void run_rounded(Warp& warp, const Inst& inst, const OpRow& row) {
   using R = decltype(F{}(Work::of(A{}...), A{}...));
-  if (ran_some_lanes<R>(warp, inst, &run_rounded<kRound, kFtz, Work, F, A...>)) return;
+  if (ran_some_lanes<R>(warp, inst, row, &run_rounded<kRound, kFtz, Work, F, A...>)) return;
   [&]<size_t... N>(std::index_sequence<N...>) {
     const Slot* const slot = &inst.operand.front();
     const std::tuple<Source<A>...> source{Source<A>(warp, slot[N + 1])...};
@@ -91,18 +98,16 @@ template <Round kRound, bool kFtz, class Work, class F, class... A>
 
 #else
 
-// Calls the handler kRun while the host rounds in a direction. With kFtz, single and double subnormals of
-// sources and results become zeros of their sign (MXCSR's DAZ and FTZ; a result counts as subnormal by its
-// size after rounding with an unbounded exponent, as with PTX's .ftz). The hardware does so for all lanes at
-// once. The compiler does not know of the mode, but it moves no arithmetic across the call of a function that
-// is not inlined. Every thread that runs Glint has MXCSR's state of process start. Therefore the state is set
-// and not saved, because reading it takes longer than the arithmetic.
-template <Round kRound, bool kFtz, Handler kRun>
-void run_in_mode(Warp& warp, const Inst& inst) {
+// Calls the handler kRun while the host rounds and flushes as the row's mode says. The hardware does so for
+// all lanes at once. The compiler does not know of the mode, but it moves no arithmetic across the call of a
+// function that is not inlined. Every thread that runs Glint has MXCSR's state of process start. Therefore
+// the state is set and not saved, because reading it takes longer than the arithmetic.
+template <Handler kRun>
+void run_in_mode(Warp& warp, const Inst& inst, const OpRow& row) {
   // Rounds to nearest, flushes nothing and traps nothing (System V ABI, 3.4.1).
   constexpr uint32_t kProcessStart = 0x1f80;
-  _mm_setcsr(kProcessStart | uint32_t(kRound) << 13 | (kFtz ? 0x8040u : 0));
-  kRun(warp, inst);
+  _mm_setcsr(kProcessStart | row.detail);
+  kRun(warp, inst, row);
   _mm_setcsr(kProcessStart);
 }
 
@@ -113,12 +118,14 @@ void run_in_mode(Warp& warp, const Inst& inst) {
 template <Round kRound, bool kFtz, class Work, class... A, class F>
 constexpr OpRow flushed_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
   OpRow row = value_op<A...>(name, unit, doc, Finished<Work, F>{}, examples);
+  if constexpr (kRound != Round::Nearest || kFtz) {
+    row.detail = mode_bits(kRound, kFtz);
 #if defined(__AVX512F__)
-  if constexpr (kRound != Round::Nearest || kFtz) row.run = &run_rounded<kRound, kFtz, Work, F, A...>;
+    row.run = &run_rounded<kRound, kFtz, Work, F, A...>;
 #else
-  if constexpr (kRound != Round::Nearest || kFtz)
-    row.run = &run_in_mode<kRound, kFtz, &run_value<Finished<Work, F>, A...>>;
+    row.run = &run_in_mode<&run_value<Finished<Work, F>, A...>>;
 #endif
+  }
   return row;
 }
 // Makes a row like flushed_op(), but keeps subnormals.

@@ -27,29 +27,53 @@ inline Two<T, bool> difference_with_borrow(T a, T b, bool borrow) {
   return {T(difference), std::make_signed_t<U>(out) < 0};
 }
 
+// Signed and unsigned numbers give the same bits and share handlers.
+struct Sum {
+  template <class T>
+  auto operator()(T a, T b) const {
+    return sum_with_carry(a, b, false);
+  }
+  template <class T>
+  auto operator()(T a, T b, bool c) const {
+    return sum_with_carry(a, b, c);
+  }
+};
+struct Difference {
+  template <class T>
+  auto operator()(T a, T b) const {
+    return difference_with_borrow(a, b, false);
+  }
+  template <class T>
+  auto operator()(T a, T b, bool c) const {
+    return difference_with_borrow(a, b, c);
+  }
+};
+template <class F>
+struct WithoutCarry {
+  template <class T>
+  T operator()(T a, T b, bool c) const {
+    return F{}(a, b, c).first;
+  }
+};
+
 template <class N>
 constexpr auto sum_rows() {
-  using T = typename N::Type;
+  using T = Unsigned<typename N::Type>;
   constexpr uint64_t kOnes = word(T(-1));
   return joined_rows(
-      binary<T>(joined<"add.cc", N::kName>, Unit::Int, "Adds. The predicate is the carry out.",
-                [](T a, T b) { return sum_with_carry(a, b, false); }, {{{1, 2}, 3, 0}, {{kOnes, 1}, 0, 1}}),
+      binary<T>(joined<"add.cc", N::kName>, Unit::Int, "Adds. The predicate is the carry out.", Sum{},
+                {{{1, 2}, 3, 0}, {{kOnes, 1}, 0, 1}}),
       value_op<T, T, bool>(joined<"addc", N::kName>, Unit::Int, "Adds two numbers and a carry.",
-                           [](T a, T b, bool c) { return sum_with_carry(a, b, c).first; },
-                           {{{1, 2, 0}, 3}, {{1, 2, 1}, 4}}),
+                           WithoutCarry<Sum>{}, {{{1, 2, 0}, 3}, {{1, 2, 1}, 4}}),
       value_op<T, T, bool>(joined<"addc.cc", N::kName>, Unit::Int,
-                           "Adds two numbers and a carry. The predicate is the carry out.",
-                           [](T a, T b, bool c) { return sum_with_carry(a, b, c); },
+                           "Adds two numbers and a carry. The predicate is the carry out.", Sum{},
                            {{{1, 2, 1}, 4, 0}, {{kOnes, kOnes, 1}, kOnes, 1}, {{kOnes, 0, 1}, 0, 1}}),
       binary<T>(joined<"sub.cc", N::kName>, Unit::Int, "Subtracts. The predicate is the borrow.",
-                [](T a, T b) { return difference_with_borrow(a, b, false); },
-                {{{3, 2}, 1, 0}, {{0, 1}, kOnes, 1}}),
+                Difference{}, {{{3, 2}, 1, 0}, {{0, 1}, kOnes, 1}}),
       value_op<T, T, bool>(joined<"subc", N::kName>, Unit::Int, "Subtracts a number and a borrow.",
-                           [](T a, T b, bool c) { return difference_with_borrow(a, b, c).first; },
-                           {{{3, 2, 0}, 1}, {{3, 2, 1}, 0}}),
+                           WithoutCarry<Difference>{}, {{{3, 2, 0}, 1}, {{3, 2, 1}, 0}}),
       value_op<T, T, bool>(joined<"subc.cc", N::kName>, Unit::Int,
-                           "Subtracts a number and a borrow. The predicate is the borrow out.",
-                           [](T a, T b, bool c) { return difference_with_borrow(a, b, c); },
+                           "Subtracts a number and a borrow. The predicate is the borrow out.", Difference{},
                            {{{3, 2, 1}, 0, 0}, {{0, kOnes, 1}, 0, 1}, {{0, 0, 1}, kOnes, 1}}));
 }
 
@@ -60,8 +84,8 @@ inline T half_product(T a, T b) {
 // Handles the product rows with a carry out. It computes the product, which is the most expensive part, once
 // for both results.
 template <class T, bool kHigh, bool kCarryIn>
-[[gnu::flatten]] void run_product(Warp& warp, const Inst& inst) {
-  if (ran_some_lanes<T>(warp, inst, &run_product<T, kHigh, kCarryIn>)) return;
+[[gnu::flatten]] void run_product(Warp& warp, const Inst& inst, const OpRow& row) {
+  if (ran_some_lanes<T>(warp, inst, row, &run_product<T, kHigh, kCarryIn>)) return;
   const Slot* const slot = &inst.operand.front();
   const Source<T> a(warp, slot[2]), b(warp, slot[3]), c(warp, slot[4]);
   const Source<bool> carry(warp, kCarryIn ? slot[5] : Slot(0));
@@ -77,9 +101,17 @@ constexpr OpRow with_handler(OpRow row, Handler run) {
   row.run = run;
   return row;
 }
+template <bool kHigh>
+struct ProductSum {
+  template <class T>
+  T operator()(T a, T b, T c, bool carry) const {
+    return sum_with_carry(half_product<kHigh>(a, b), c, carry).first;
+  }
+};
 template <class N, Text kHalf, bool kHigh>
 constexpr auto product_rows() {
-  using T = typename N::Type;
+  // The low half of a product has no sign.
+  using T = std::conditional_t<kHigh, typename N::Type, Unsigned<typename N::Type>>;
   constexpr uint64_t kOnes = word(T(-1));
   constexpr uint64_t kProduct = kHigh ? 0 : 15;  // of 3 and 5
   return joined_rows(
@@ -88,10 +120,9 @@ constexpr auto product_rows() {
                               [](T, T, T) { return Two<T, bool>{}; },
                               {{{3, 5, 1}, kProduct + 1, 0}, {{3, 5, kOnes}, kHigh ? kOnes : 14, !kHigh}}),
                    &run_product<T, kHigh, false>),
-      value_op<T, T, T, bool>(
-          joined<"madc", kHalf, N::kName>, Unit::Int, "Adds half of a product, the third source and a carry.",
-          [](T a, T b, T c, bool carry) { return sum_with_carry(half_product<kHigh>(a, b), c, carry).first; },
-          {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
+      value_op<T, T, T, bool>(joined<"madc", kHalf, N::kName>, Unit::Int,
+                              "Adds half of a product, the third source and a carry.", ProductSum<kHigh>{},
+                              {{{3, 5, 1, 0}, kProduct + 1}, {{3, 5, 1, 1}, kProduct + 2}}),
       with_handler(
           value_op<T, T, T, bool>(
               joined<"madc", kHalf, ".cc", N::kName>, Unit::Int,

@@ -8,46 +8,72 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-template <class N>
-struct Integer : N {
-  using Type = typename N::Type;
-  static constexpr auto kFlush = Text("");
-  static constexpr Unit kUnit = Unit::Int;
-  // The examples use two numbers whose order changes when the wrong signedness is taken.
-  static constexpr uint64_t kOne = std::is_signed_v<Type> ? word(Type(-1)) : 1;
-  static constexpr uint64_t kTwo = std::is_signed_v<Type> ? 1 : word(Type(-1));
-  [[gnu::always_inline]] static Type value(Type x) { return x; }
+constexpr Relation kRelations[] = {
+    {".eq", "Gives true where a == b.", Test::Equal, false, 0, 1, 0},
+    {".ne", "Gives true where a != b.", Test::Equal, true, 1, 0, 1},
+    {".lt", "Gives true where a < b.", Test::Less, false, 1, 0, 0},
+    {".le", "Gives true where a <= b.", Test::Greater, true, 1, 1, 0},
+    {".gt", "Gives true where a > b.", Test::Greater, false, 0, 0, 1},
+    {".ge", "Gives true where a >= b.", Test::Less, true, 0, 1, 1},
+    // These are PTX's other names of the unsigned relations: lower, lower or same, higher, higher or same.
+    {".lo", "Gives true where a < b.", Test::Less, false, 1, 0, 0},
+    {".ls", "Gives true where a <= b.", Test::Greater, true, 1, 1, 0},
+    {".hi", "Gives true where a > b.", Test::Greater, false, 0, 0, 1},
+    {".hs", "Gives true where a >= b.", Test::Less, true, 0, 1, 1},
 };
 
-template <class N>
-constexpr auto equality_rows() {
-  return joined_rows(
-      relation_rows<Relation<".eq", IsEqual, 0, 1, 0>, Integer<N>>("Gives true where a == b."),
-      relation_rows<Relation<".ne", IsNotEqual, 1, 0, 1>, Integer<N>>("Gives true where a != b."));
-}
-template <class N>
-constexpr auto order_rows() {
-  return joined_rows(
-      equality_rows<N>(),
-      relation_rows<Relation<".lt", IsLess, 1, 0, 0>, Integer<N>>("Gives true where a < b."),
-      relation_rows<Relation<".le", IsLessOrEqual, 1, 1, 0>, Integer<N>>("Gives true where a <= b."),
-      relation_rows<Relation<".gt", IsGreater, 0, 0, 1>, Integer<N>>("Gives true where a > b."),
-      relation_rows<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("Gives true where a >= b."));
-}
-// These are PTX's other names of the unsigned relations: lower, lower or same, higher, higher or same.
-template <class N>
-constexpr auto unsigned_rows() {
-  return joined_rows(
-      order_rows<N>(), relation_rows<Relation<".lo", IsLess, 1, 0, 0>, Integer<N>>("Gives true where a < b."),
-      relation_rows<Relation<".ls", IsLessOrEqual, 1, 1, 0>, Integer<N>>("Gives true where a <= b."),
-      relation_rows<Relation<".hi", IsGreater, 0, 0, 1>, Integer<N>>("Gives true where a > b."),
-      relation_rows<Relation<".hs", IsGreaterOrEqual, 0, 1, 1>, Integer<N>>("Gives true where a >= b."));
-}
+template <class T>
+struct Integer {
+  using Type = T;
+  [[gnu::always_inline]] static T value(T x) { return x; }
+};
 
-constexpr auto kRows =
-    joined_rows(rows_of_types<TypeB16, TypeB32, TypeB64>([]<class N>() { return equality_rows<N>(); }),
-                rows_of_types<TypeS16, TypeS32, TypeS64>([]<class N>() { return order_rows<N>(); }),
-                rows_of_types<TypeU16, TypeU32, TypeU64>([]<class N>() { return unsigned_rows<N>(); }));
+// Describes a type, and how many of the relations it has. Equality has no sign.
+struct IntegerType {
+  size_t num_relations;
+  Compared type;
+};
+template <class N>
+constexpr IntegerType integer_type(size_t num_relations) {
+  using T = typename N::Type;
+  HandlersOfTests handlers_of_tests;
+  add_handlers<Integer<std::make_unsigned_t<T>>, Test::Equal>(handlers_of_tests);
+  if (num_relations > 2) add_handlers<Integer<T>, Test::Less, Test::Greater>(handlers_of_tests);
+  // The examples use two numbers whose order changes when the wrong signedness is taken.
+  const uint64_t ones = word(T(-1)), one = 1;
+  const bool is_signed = std::is_signed_v<T>;
+  return {num_relations,
+          {"", joined<N::kName>, Unit::Int, source_kind<T>(), is_signed ? ones : one, is_signed ? one : ones,
+           0, handlers_of_tests}};
+}
+constexpr IntegerType kTypes[] = {
+    integer_type<TypeB16>(2),  integer_type<TypeB32>(2),  integer_type<TypeB64>(2),
+    integer_type<TypeS16>(6),  integer_type<TypeS32>(6),  integer_type<TypeS64>(6),
+    integer_type<TypeU16>(10), integer_type<TypeU32>(10), integer_type<TypeU64>(10),
+};
+
+template <class Visit>
+constexpr void each_row(Visit&& visit) {
+  for (const IntegerType& of : kTypes)
+    for (size_t r = 0; r < of.num_relations; ++r) each_row(of.type, kRelations[r], visit);
+}
+constexpr size_t kNumRows = [] {
+  size_t relations = 0;
+  for (const IntegerType& of : kTypes) relations += of.num_relations;
+  return relations * kRowsOfRelation;
+}();
+constexpr auto kNames = [] {
+  std::array<Word, kNumRows> out{};
+  size_t n = 0;
+  each_row([&](NameParts name, auto&&) { out[n++] = Word(name); });
+  return out;
+}();
+constexpr auto kRows = [] {
+  std::array<OpRow, kNumRows> out{};
+  size_t n = 0;
+  each_row([&](NameParts, auto&& make) { out[n] = make(kNames[n].view()), ++n; });
+  return out;
+}();
 
 }  // namespace
 

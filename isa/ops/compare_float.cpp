@@ -9,18 +9,6 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Gives the opposites of ordered relations, which are true with a NaN.
-template <class Test>
-struct Not {
-  bool operator()(auto a, auto b) const { return !Test{}(a, b); }
-};
-struct IsLessOrGreater {
-  bool operator()(auto a, auto b) const { return bool((a < b) | (a > b)); }
-};
-struct IsOrdered {
-  bool operator()(auto a, auto b) const { return bool((a <= b) | (a > b)); }
-};
-
 // Describes a float operand: its type, its flush modifier, and the number that is compared.
 struct SinglePrecision : Named<float, ".f32"> {
   static constexpr auto kFlush = Text("");
@@ -72,49 +60,22 @@ struct BrainFloat : Named<Bfloat, ".bf16"> {
   [[gnu::always_inline]] static float value(Bfloat x) { return to_float(x); }
 };
 
-// Calls make.operator()<R>(doc) for the fourteen relations of floats.
-template <class Make>
-constexpr auto for_relations(Make make) {
-  return joined_rows(make.template operator()<Relation<".eq", IsEqual, 0, 1, 0>>(
-                         "Gives true where a == b, and false with a NaN."),
-                     make.template operator()<Relation<".ne", IsLessOrGreater, 1, 0, 1>>(
-                         "Gives true where a != b, and false with a NaN."),
-                     make.template operator()<Relation<".lt", IsLess, 1, 0, 0>>(
-                         "Gives true where a < b, and false with a NaN."),
-                     make.template operator()<Relation<".le", IsLessOrEqual, 1, 1, 0>>(
-                         "Gives true where a <= b, and false with a NaN."),
-                     make.template operator()<Relation<".gt", IsGreater, 0, 0, 1>>(
-                         "Gives true where a > b, and false with a NaN."),
-                     make.template operator()<Relation<".ge", IsGreaterOrEqual, 0, 1, 1>>(
-                         "Gives true where a >= b, and false with a NaN."),
-                     make.template operator()<Relation<".equ", Not<IsLessOrGreater>, 0, 1, 0, 1>>(
-                         "Gives true where a == b or one source is a NaN."),
-                     make.template operator()<Relation<".neu", IsNotEqual, 1, 0, 1, 1>>(
-                         "Gives true where a != b or one source is a NaN."),
-                     make.template operator()<Relation<".ltu", Not<IsGreaterOrEqual>, 1, 0, 0, 1>>(
-                         "Gives true where a < b or one source is a NaN."),
-                     make.template operator()<Relation<".leu", Not<IsGreater>, 1, 1, 0, 1>>(
-                         "Gives true where a <= b or one source is a NaN."),
-                     make.template operator()<Relation<".gtu", Not<IsLessOrEqual>, 0, 0, 1, 1>>(
-                         "Gives true where a > b or one source is a NaN."),
-                     make.template operator()<Relation<".geu", Not<IsLess>, 0, 1, 1, 1>>(
-                         "Gives true where a >= b or one source is a NaN."),
-                     make.template operator()<Relation<".num", IsOrdered, 1, 1, 1, 0>>(
-                         "Gives true where neither source is a NaN."),
-                     make.template operator()<Relation<".nan", Not<IsOrdered>, 0, 0, 0, 1>>(
-                         "Gives true where one source is a NaN."));
-}
-
-constexpr OpRow with_example(OpRow row, Example example) {
-  row.examples.at[row.examples.count++] = example;
-  return row;
-}
-template <class R, class N>
-constexpr auto float_relation_rows(std::string_view doc) {
-  auto rows = relation_rows<R, N>(doc);
-  rows[0] = with_example(rows[0], {{N::kOne, N::kNan}, R::kTruth.unordered});
-  return rows;
-}
+constexpr Relation kRelations[] = {
+    {".eq", "Gives true where a == b, and false with a NaN.", Test::Equal, false, 0, 1, 0},
+    {".ne", "Gives true where a != b, and false with a NaN.", Test::LessOrGreater, false, 1, 0, 1},
+    {".lt", "Gives true where a < b, and false with a NaN.", Test::Less, false, 1, 0, 0},
+    {".le", "Gives true where a <= b, and false with a NaN.", Test::LessOrEqual, false, 1, 1, 0},
+    {".gt", "Gives true where a > b, and false with a NaN.", Test::Greater, false, 0, 0, 1},
+    {".ge", "Gives true where a >= b, and false with a NaN.", Test::GreaterOrEqual, false, 0, 1, 1},
+    {".equ", "Gives true where a == b or one source is a NaN.", Test::LessOrGreater, true, 0, 1, 0, 1},
+    {".neu", "Gives true where a != b or one source is a NaN.", Test::Equal, true, 1, 0, 1, 1},
+    {".ltu", "Gives true where a < b or one source is a NaN.", Test::GreaterOrEqual, true, 1, 0, 0, 1},
+    {".leu", "Gives true where a <= b or one source is a NaN.", Test::Greater, true, 1, 1, 0, 1},
+    {".gtu", "Gives true where a > b or one source is a NaN.", Test::LessOrEqual, true, 0, 0, 1, 1},
+    {".geu", "Gives true where a >= b or one source is a NaN.", Test::Less, true, 0, 1, 1, 1},
+    {".num", "Gives true where neither source is a NaN.", Test::Ordered, false, 1, 1, 1, 0},
+    {".nan", "Gives true where one source is a NaN.", Test::Ordered, true, 0, 0, 0, 1},
+};
 
 // Selects half a pair of 16-bit floats like a single operand, for the two predicates of setp.lt.f16x2.
 template <class N, int kShift>
@@ -124,87 +85,146 @@ struct HalfOfPair {
     return N::upper_value(kShift == 0 ? x << 16 : x & 0xffff'0000u);
   }
 };
-template <class R, class N>
-void run_pair(Warp& warp, const Inst& inst) {
+template <Test kTest, bool kOpposite, class N>
+void run_pair(Warp& warp, const Inst& inst, const OpRow&) {
   const Slot* const slot = &inst.operand.front();
-  write_predicate(warp, slot[0], compared<R, HalfOfPair<N, 0>>(warp, slot[2], slot[3]));
-  write_predicate(warp, slot[1], compared<R, HalfOfPair<N, 16>>(warp, slot[2], slot[3]));
+  write_predicate(warp, slot[0], related<kTest, kOpposite, HalfOfPair<N, 0>>(warp, slot[2], slot[3]));
+  write_predicate(warp, slot[1], related<kTest, kOpposite, HalfOfPair<N, 16>>(warp, slot[2], slot[3]));
 }
-template <class R, class N, class Op>
-void run_pair_combined(Warp& warp, const Inst& inst) {
+template <Test kTest, bool kOpposite, class N, size_t kCombination>
+void run_pair_combined(Warp& warp, const Inst& inst, const OpRow&) {
   const Slot* const slot = &inst.operand.front();
   const LaneMask other = *(&warp.predicate.front() + slot[4]);  // read before it may be written
-  write_predicate(warp, slot[0], Op::apply(compared<R, HalfOfPair<N, 0>>(warp, slot[2], slot[3]), other));
-  write_predicate(warp, slot[1], Op::apply(compared<R, HalfOfPair<N, 16>>(warp, slot[2], slot[3]), other));
+  const LaneMask low = related<kTest, kOpposite, HalfOfPair<N, 0>>(warp, slot[2], slot[3]);
+  const LaneMask high = related<kTest, kOpposite, HalfOfPair<N, 16>>(warp, slot[2], slot[3]);
+  write_predicate(warp, slot[0], kCombinations[kCombination].of(low, other));
+  write_predicate(warp, slot[1], kCombinations[kCombination].of(high, other));
 }
-template <class R, class N, uint32_t kYes>
-[[gnu::flatten]] void run_pair_set(Warp& warp, const Inst& inst) {
-  const Slot* const slot = &inst.operand.front();
-  const LaneMask low = compared<R, HalfOfPair<N, 0>>(warp, slot[1], slot[2]);
-  const LaneMask high = compared<R, HalfOfPair<N, 16>>(warp, slot[1], slot[2]);
-  write_lanes<uint32_t>(warp, slot[0], [&](int i) {
-    return ((low & kLaneBit[i]) != 0 ? kYes : 0u) | ((high & kLaneBit[i]) != 0 ? kYes << 16 : 0u);
+[[gnu::flatten, gnu::noinline]] void write_choices(Warp& warp, Slot slot, LaneMask low, LaneMask high,
+                                                   uint32_t yes) {
+  write_lanes<uint32_t>(warp, slot, [&](int i) {
+    return ((low & kLaneBit[i]) != 0 ? yes : 0u) | ((high & kLaneBit[i]) != 0 ? yes << 16 : 0u);
   });
 }
+template <Test kTest, bool kOpposite, class N>
+void run_pair_set(Warp& warp, const Inst& inst, const OpRow& row) {
+  const Slot* const slot = &inst.operand.front();
+  const LaneMask low = related<kTest, kOpposite, HalfOfPair<N, 0>>(warp, slot[1], slot[2]);
+  const LaneMask high = related<kTest, kOpposite, HalfOfPair<N, 16>>(warp, slot[1], slot[2]);
+  write_choices(warp, slot[0], low, high, kYes[row.detail]);
+}
 
-// Compares (1, 1) with (2, 1), low half first: less, then equal.
+// Describes a type. 16-bit floats have pairs, and `yes` is the 1 of their type: an index of kYes.
+struct FloatType {
+  Compared type;
+  bool has_pairs;
+  uint8_t yes;
+};
+template <class N, Test kTest, bool kOpposite>
+constexpr void add_pair_handlers(Handlers& of) {
+  of.setp_pair = &run_pair<kTest, kOpposite, N>;
+  of.combined_pair = {&run_pair_combined<kTest, kOpposite, N, 0>, &run_pair_combined<kTest, kOpposite, N, 1>,
+                      &run_pair_combined<kTest, kOpposite, N, 2>};
+  of.set_pair = &run_pair_set<kTest, kOpposite, N>;
+}
+template <class N, bool kHasPairs, Test... kTest>
+constexpr HandlersOfTests handlers_of_tests() {
+  HandlersOfTests out;
+  add_handlers<N, kTest...>(out);
+  if constexpr (kHasPairs) {
+    (add_pair_handlers<N, kTest, false>(out[size_t(kTest)][0]), ...);
+    (add_pair_handlers<N, kTest, true>(out[size_t(kTest)][1]), ...);
+  }
+  return out;
+}
 template <class N>
-inline constexpr uint64_t kOnes = N::kOne | N::kOne << 16;
-template <class N>
-inline constexpr uint64_t kTwoOne = N::kTwo | N::kOne << 16;
+constexpr FloatType float_type(uint8_t yes) {
+  constexpr bool kHasPairs = sizeof(typename N::Type) == 2;
+  return {{joined<N::kFlush>, joined<N::kName>, N::kUnit, source_kind<typename N::Type>(), N::kOne, N::kTwo,
+           N::kNan,
+           handlers_of_tests<N, kHasPairs, Test::Equal, Test::Less, Test::Greater, Test::LessOrEqual,
+                             Test::GreaterOrEqual, Test::LessOrGreater, Test::Ordered>()},
+          kHasPairs,
+          yes};
+}
+constexpr FloatType kTypes[] = {
+    float_type<SinglePrecision>(0), float_type<FlushedSingle>(0), float_type<DoublePrecision>(0),
+    float_type<HalfPrecision>(3),   float_type<FlushedHalf>(3),   float_type<BrainFloat>(4),
+};
 
-template <class R, class N, class Op>
-constexpr OpRow combined_pair_row() {
-  constexpr auto example = [](bool c) {
-    return Example{{kOnes<N>, kTwoOne<N>, c}, Op::apply(R::kTruth.less, c), Op::apply(R::kTruth.equal, c)};
+// Examples compare (1, 1) with (2, 1), low half first: less, then equal.
+constexpr uint64_t ones(const Compared& type) {
+  return type.one | type.one << 16;
+}
+constexpr uint64_t two_one(const Compared& type) {
+  return type.two | type.one << 16;
+}
+constexpr OpRow pair_row(std::string_view name, const Compared& type, const Relation& r) {
+  return comparison_row(
+      name, type, 0, {DstPred, DstPred, Src32, Src32}, handlers_of(type, r).setp_pair,
+      "Compares the low and the high halves, and gives two predicates.",
+      {{{ones(type), two_one(type)}, r.less, r.equal}, {{two_one(type), ones(type)}, r.greater, r.equal}});
+}
+constexpr OpRow combined_pair_row(std::string_view name, const Compared& type, const Relation& r,
+                                  size_t combination) {
+  const Combination& op = kCombinations[combination];
+  const auto example = [&](bool c) {
+    return Example{{ones(type), two_one(type), c}, op.of(r.less, c), op.of(r.equal, c)};
   };
-  return comparison_row(joined<"setp", R::kName, Op::kName, N::kFlush, N::kName, "x2">, Unit::Fp16,
-                        {DstPred, DstPred, Src32, Src32, SrcPred}, &run_pair_combined<R, N, Op>,
+  return comparison_row(name, type, 0, {DstPred, DstPred, Src32, Src32, SrcPred},
+                        handlers_of(type, r).combined_pair[combination],
                         "Compares the low and the high halves, and combines each result with a predicate.",
                         {example(false), example(true)});
 }
-template <class R, class N, uint32_t kYes>
-constexpr auto pair_rows() {
-  constexpr Truth kTruth = R::kTruth;
-  constexpr uint64_t kSet = (kTruth.less ? kYes : 0u) | (kTruth.equal ? kYes << 16 : 0u);
-  return joined_rows(
-      comparison_row(joined<"setp", R::kName, N::kFlush, N::kName, "x2">, Unit::Fp16,
-                     {DstPred, DstPred, Src32, Src32}, &run_pair<R, N>,
-                     "Compares the low and the high halves, and gives two predicates.",
-                     {{{kOnes<N>, kTwoOne<N>}, kTruth.less, kTruth.equal},
-                      {{kTwoOne<N>, kOnes<N>}, kTruth.greater, kTruth.equal}}),
-      combined_pair_row<R, N, And>(), combined_pair_row<R, N, Or>(), combined_pair_row<R, N, Xor>(),
-      comparison_row(
-          joined<"set", R::kName, N::kFlush, N::kName, "x2", N::kName, "x2">, Unit::Fp16,
-          {Dst32, Src32, Src32}, &run_pair_set<R, N, kYes>,
-          "Compares the low and the high halves, and gives two floats: 1 for true, 0 for false.",
-          {{{kOnes<N>, kTwoOne<N>}, kSet}, {{kOnes<N>, kOnes<N>}, kTruth.equal ? kYes * 0x1'0001u : 0}}));
-}
-// Gives a result of 16 bits: all ones, or 1 as a float of the source's type.
-template <class R, class N, uint32_t kYes>
-constexpr auto short_set_rows() {
-  return joined_rows(set_row<R, N, ".u16", 0xffffu>(), set_row<R, N, ".s16", 0xffffu>(),
-                     set_row<R, N, N::kName, kYes>());
+constexpr OpRow pair_set_row(std::string_view name, const Compared& type, const Relation& r, uint8_t yes) {
+  const uint32_t one = kYes[yes], less_equal = (r.less ? one : 0u) | (r.equal ? one << 16 : 0u);
+  return comparison_row(
+      name, type, yes, {Dst32, Src32, Src32}, handlers_of(type, r).set_pair,
+      "Compares the low and the high halves, and gives two floats: 1 for true, 0 for false.",
+      {{{ones(type), two_one(type)}, less_equal}, {{ones(type), ones(type)}, r.equal ? one * 0x1'0001u : 0}});
 }
 
-constexpr auto kSingleRows =
-    for_relations([]<class R>(std::string_view doc) { return float_relation_rows<R, SinglePrecision>(doc); });
-constexpr auto kFlushedRows =
-    for_relations([]<class R>(std::string_view doc) { return float_relation_rows<R, FlushedSingle>(doc); });
-constexpr auto kDoubleRows =
-    for_relations([]<class R>(std::string_view doc) { return float_relation_rows<R, DoublePrecision>(doc); });
-template <class N, uint32_t kYes>
-constexpr auto short_rows() {
-  return for_relations([]<class R>(std::string_view doc) {
-    return joined_rows(float_relation_rows<R, N>(doc), short_set_rows<R, N, kYes>(), pair_rows<R, N, kYes>());
-  });
+// Does the same as each_row() for the rows that only 16-bit floats have: results of 16 bits, and pairs.
+template <class Visit>
+constexpr void each_short_row(const FloatType& of, const Relation& r, Visit&& visit) {
+  const Compared& type = of.type;
+  for (const Result& result : {Result{".u16", 2}, Result{".s16", 2}, Result{type.name, of.yes}})
+    visit(NameParts{"set", r.name, type.flush, result.name, type.name},
+          [&](auto name) { return set_row(name, type, r, result); });
+  visit(NameParts{"setp", r.name, type.flush, type.name, "x2"},
+        [&](auto name) { return pair_row(name, type, r); });
+  for (size_t c = 0; c < std::size(kCombinations); ++c)
+    visit(NameParts{"setp", r.name, kCombinations[c].name, type.flush, type.name, "x2"},
+          [&](auto name) { return combined_pair_row(name, type, r, c); });
+  visit(NameParts{"set", r.name, type.flush, type.name, "x2", type.name, "x2"},
+        [&](auto name) { return pair_set_row(name, type, r, of.yes); });
 }
-constexpr auto kHalfRows = short_rows<HalfPrecision, 0x3c00>();
-constexpr auto kFlushedHalfRows = short_rows<FlushedHalf, 0x3c00>();
-constexpr auto kBfloatRows = short_rows<BrainFloat, 0x3f80>();
-
-constexpr auto kRows =
-    joined_rows(kSingleRows, kFlushedRows, kDoubleRows, kHalfRows, kFlushedHalfRows, kBfloatRows);
+template <class Visit>
+constexpr void each_row(Visit&& visit) {
+  for (const FloatType& of : kTypes)
+    for (const Relation& r : kRelations) {
+      each_row(of.type, r, visit);
+      if (of.has_pairs) each_short_row(of, r, visit);
+    }
+}
+constexpr size_t kNumRows = [] {
+  size_t n = 0;
+  for (const FloatType& of : kTypes)
+    n += kRowsOfRelation + (of.has_pairs ? 3 + 2 + std::size(kCombinations) : 0);
+  return n * std::size(kRelations);
+}();
+constexpr auto kNames = [] {
+  std::array<Word, kNumRows> out{};
+  size_t n = 0;
+  each_row([&](NameParts name, auto&&) { out[n++] = Word(name); });
+  return out;
+}();
+constexpr auto kRows = [] {
+  std::array<OpRow, kNumRows> out{};
+  size_t n = 0;
+  each_row([&](NameParts, auto&& make) { out[n] = make(kNames[n].view()), ++n; });
+  return out;
+}();
 
 }  // namespace
 

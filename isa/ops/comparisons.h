@@ -5,155 +5,203 @@
 // Only files of isa/ops include this file. Everything is in an unnamed namespace, so each file has its own
 // handlers.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <string_view>
+#include <type_traits>
 
 #include "isa/ops/row_tables.h"
+#include "isa/ops/word.h"
 
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-// Holds the results for a < b, a == b, a > b, and a or b not a number. The examples of a relation are made
-// from them.
-struct Truth {
-  bool less, equal, greater, unordered;
+// Names the tests for which there is code. Every relation is one of them or its opposite. A test of floats is
+// false with a NaN.
+enum class Test : uint8_t {
+  Equal,
+  Less,
+  Greater,
+  LessOrEqual,
+  GreaterOrEqual,
+  LessOrGreater,
+  Ordered,
+  Count
 };
-
-// Names a relation as PTX does. Test computes it.
-template <Text kText, class Test, bool kLess, bool kEqual, bool kGreater, bool kUnordered = false>
-struct Relation {
-  static constexpr auto kName = kText;
-  static constexpr Truth kTruth{kLess, kEqual, kGreater, kUnordered};
-  template <class T>
-  [[gnu::always_inline]] static bool holds(T a, T b) {
-    return Test{}(a, b);
+template <Test kTest, class T>
+[[gnu::always_inline]] inline bool holds(T a, T b) {
+  if constexpr (kTest == Test::Equal) {
+    // Compilers leave == of single precision in scalar code on the widest path.
+    if constexpr (std::is_same_v<T, float>) return bool((a <= b) & (a >= b));
+    return a == b;
   }
-};
+  if constexpr (kTest == Test::Less) return a < b;
+  if constexpr (kTest == Test::Greater) return a > b;
+  if constexpr (kTest == Test::LessOrEqual) return a <= b;
+  if constexpr (kTest == Test::GreaterOrEqual) return a >= b;
+  if constexpr (kTest == Test::LessOrGreater) return bool((a < b) | (a > b));
+  if constexpr (kTest == Test::Ordered) return bool((a <= b) | (a > b));
+}
 
-struct IsEqual {
-  bool operator()(auto a, auto b) const { return a == b; }
-  // Compilers leave == of single precision in scalar code on the widest path.
-  bool operator()(float a, float b) const { return bool((a <= b) & (a >= b)); }
-};
-struct IsNotEqual {
-  bool operator()(auto a, auto b) const { return a != b; }
-};
-struct IsLess {
-  bool operator()(auto a, auto b) const { return a < b; }
-};
-struct IsLessOrEqual {
-  bool operator()(auto a, auto b) const { return a <= b; }
-};
-struct IsGreater {
-  bool operator()(auto a, auto b) const { return a > b; }
-};
-struct IsGreaterOrEqual {
-  bool operator()(auto a, auto b) const { return a >= b; }
-};
-
-// Returns the mask of the lanes where the relation holds between two sources. N::Type is the type of a lane,
-// and N::value returns the part of it that is compared.
-template <class R, class N>
+// Returns the mask of the lanes where a test holds between two sources. N::Type is the type of a lane, and
+// N::value returns the part of it that is compared.
+template <Test kTest, class N>
 [[gnu::flatten, gnu::noinline]] LaneMask compared(const Warp& warp, Slot a, Slot b) {
   const Source<typename N::Type> x(warp, a), y(warp, b);
-  return mask_of([&](int i) { return R::holds(N::value(x.at(i)), N::value(y.at(i))); });
+  return mask_of([&](int i) { return holds<kTest>(N::value(x.at(i)), N::value(y.at(i))); });
+}
+// Does so for a relation, which is the test or its opposite.
+template <Test kTest, bool kOpposite, class N>
+[[gnu::always_inline]] inline LaneMask related(const Warp& warp, Slot a, Slot b) {
+  const LaneMask mask = compared<kTest, N>(warp, a, b);
+  return kOpposite ? ~mask : mask;
 }
 
-template <class R, class N>
-void run_setp(Warp& warp, const Inst& inst) {
+template <Test kTest, bool kOpposite, class N>
+void run_setp(Warp& warp, const Inst& inst, const OpRow&) {
   const Slot* const slot = &inst.operand.front();
-  write_predicate(warp, slot[0], compared<R, N>(warp, slot[1], slot[2]));
+  write_predicate(warp, slot[0], related<kTest, kOpposite, N>(warp, slot[1], slot[2]));
 }
 
-// These are the combining operators of setp: %p0 = r op c, %p1 = !r op c.
-struct And {
-  static constexpr auto kName = Text(".and");
-  static constexpr bool apply(bool r, bool c) { return r && c; }
-  static constexpr LaneMask apply(LaneMask r, LaneMask c) { return r & c; }
+// Describes a combining operator of setp, %p0 = r op c, %p1 = !r op c: whether it is true where both r and c
+// are, and where one of them is.
+struct Combination {
+  std::string_view name;
+  LaneMask for_both, for_one;
+  [[gnu::always_inline]] constexpr LaneMask of(LaneMask r, LaneMask c) const {
+    return (r & c & for_both) | ((r ^ c) & for_one);
+  }
 };
-struct Or {
-  static constexpr auto kName = Text(".or");
-  static constexpr bool apply(bool r, bool c) { return r || c; }
-  static constexpr LaneMask apply(LaneMask r, LaneMask c) { return r | c; }
-};
-struct Xor {
-  static constexpr auto kName = Text(".xor");
-  static constexpr bool apply(bool r, bool c) { return r != c; }
-  static constexpr LaneMask apply(LaneMask r, LaneMask c) { return r ^ c; }
-};
-template <class R, class N, class Op>
-void run_setp_combined(Warp& warp, const Inst& inst) {
+constexpr Combination kCombinations[] = {
+    {".and", kAllLanes, 0}, {".or", kAllLanes, kAllLanes}, {".xor", 0, kAllLanes}};
+template <Test kTest, bool kOpposite, class N, size_t kCombination>
+void run_setp_combined(Warp& warp, const Inst& inst, const OpRow&) {
   const Slot* const slot = &inst.operand.front();
-  const LaneMask result = compared<R, N>(warp, slot[2], slot[3]);
+  const LaneMask result = related<kTest, kOpposite, N>(warp, slot[2], slot[3]);
   const LaneMask other = *(&warp.predicate.front() + slot[4]);
-  write_predicate(warp, slot[0], Op::apply(result, other));
-  write_predicate(warp, slot[1], Op::apply(~result, other));
+  write_predicate(warp, slot[0], kCombinations[kCombination].of(result, other));
+  write_predicate(warp, slot[1], kCombinations[kCombination].of(~result, other));
 }
 
+// Lists the numbers that set gives for true. The detail of a row is an index.
+constexpr uint32_t kYes[] = {0xffff'ffff, 0x3f80'0000, 0xffff, 0x3c00, 0x3f80};
 [[gnu::flatten, gnu::noinline]] void write_choice(Warp& warp, Slot slot, LaneMask mask, uint32_t yes) {
   write_lanes<uint32_t>(warp, slot, [&](int i) { return (mask & kLaneBit[i]) != 0 ? yes : 0u; });
 }
-// Writes `yes` where the relation holds, and 0 elsewhere.
-template <class R, class N, uint32_t kYes>
-void run_set(Warp& warp, const Inst& inst) {
+// Writes a number where the relation holds, and 0 elsewhere.
+template <Test kTest, bool kOpposite, class N>
+void run_set(Warp& warp, const Inst& inst, const OpRow& row) {
   const Slot* const slot = &inst.operand.front();
-  write_choice(warp, slot[0], compared<R, N>(warp, slot[1], slot[2]), kYes);
+  const LaneMask result = related<kTest, kOpposite, N>(warp, slot[1], slot[2]);
+  write_choice(warp, slot[0], result, kYes[row.detail]);
 }
 
-constexpr OpRow comparison_row(std::string_view name, Unit unit, Operands operands, Handler run,
-                               std::string_view doc, Examples examples) {
+// Holds the handlers of one relation of one type.
+struct Handlers {
+  using OfCombinations = std::array<Handler, std::size(kCombinations)>;
+  Handler setp = nullptr, set = nullptr;
+  OfCombinations combined{};
+  // These are of pairs of 16-bit floats.
+  Handler setp_pair = nullptr, set_pair = nullptr;
+  OfCombinations combined_pair{};
+};
+template <class N, Test kTest, bool kOpposite>
+constexpr Handlers handlers() {
+  return {&run_setp<kTest, kOpposite, N>,
+          &run_set<kTest, kOpposite, N>,
+          {&run_setp_combined<kTest, kOpposite, N, 0>, &run_setp_combined<kTest, kOpposite, N, 1>,
+           &run_setp_combined<kTest, kOpposite, N, 2>}};
+}
+// Holds the handlers of all tests, and of their opposites.
+using HandlersOfTests = std::array<std::array<Handlers, 2>, size_t(Test::Count)>;
+template <class N, Test... kTest>
+constexpr void add_handlers(HandlersOfTests& out) {
+  ((out[size_t(kTest)] = {handlers<N, kTest, false>(), handlers<N, kTest, true>()}), ...);
+}
+
+// Describes a relation as PTX names it: the test, whether the relation is the test's opposite, and its
+// results for a < b, a == b, a > b, and a or b not a number. The examples are made from them.
+struct Relation {
+  std::string_view name, doc;
+  Test test;
+  bool is_opposite;
+  bool less, equal, greater, unordered = false;
+};
+
+// Describes the type of the sources. Examples compare `one`, `two` and (of floats) `nan`.
+struct Compared {
+  std::string_view flush, name;
+  Unit unit;
+  OperandKind source;
+  uint64_t one, two, nan;
+  HandlersOfTests handlers;
+};
+
+constexpr OpRow comparison_row(std::string_view name, const Compared& type, size_t detail, Operands operands,
+                               Handler run, std::string_view doc, Examples examples) {
   OpRow row;
   row.name = name;
-  row.unit = unit;
+  row.unit = type.unit;
   row.operands = operands;
+  row.detail = uint16_t(detail);
   row.run = run;
   row.doc = doc;
   row.examples = examples;
   return row;
 }
 
-// N has kFlush (".ftz" or ""), kName (".f32"), kOne and kTwo as examples write them, and kUnit.
-template <class R, class N>
-constexpr OpRow setp_row(std::string_view doc) {
-  constexpr OperandKind kKind = source_kind<typename N::Type>();
-  constexpr Truth kTruth = R::kTruth;
-  return comparison_row(joined<"setp", R::kName, N::kFlush, N::kName>, N::kUnit, {DstPred, kKind, kKind},
-                        &run_setp<R, N>, doc,
-                        {{{N::kOne, N::kOne}, kTruth.equal},
-                         {{N::kOne, N::kTwo}, kTruth.less},
-                         {{N::kTwo, N::kOne}, kTruth.greater}});
+// Names a type of the result of set, and the number for true.
+struct Result {
+  std::string_view name;
+  uint8_t yes;
+};
+constexpr Result kResults[] = {{".u32", 0}, {".s32", 0}, {".f32", 1}};
+inline constexpr size_t kRowsOfRelation = 1 + std::size(kCombinations) + std::size(kResults);
+
+constexpr const Handlers& handlers_of(const Compared& type, const Relation& r) {
+  return type.handlers[size_t(r.test)][r.is_opposite];
 }
-template <class R, class N, class Op>
-constexpr OpRow combined_row() {
-  constexpr OperandKind kKind = source_kind<typename N::Type>();
-  constexpr Truth kTruth = R::kTruth;
-  constexpr auto example = [](uint64_t b, bool r, bool c) {
-    return Example{{N::kOne, b, c}, Op::apply(r, c), Op::apply(!r, c)};
+constexpr OpRow setp_row(std::string_view name, const Compared& type, const Relation& r) {
+  Examples examples{
+      {{type.one, type.one}, r.equal}, {{type.one, type.two}, r.less}, {{type.two, type.one}, r.greater}};
+  if (type.nan != 0) examples.at[examples.count++] = {{type.one, type.nan}, r.unordered};
+  return comparison_row(name, type, 0, {DstPred, type.source, type.source}, handlers_of(type, r).setp, r.doc,
+                        examples);
+}
+constexpr OpRow combined_row(std::string_view name, const Compared& type, const Relation& r,
+                             size_t combination) {
+  const Combination& op = kCombinations[combination];
+  const auto example = [&](uint64_t b, bool result, bool c) {
+    return Example{{type.one, b, c}, op.of(result, c), op.of(!result, c)};
   };
   return comparison_row(
-      joined<"setp", R::kName, Op::kName, N::kFlush, N::kName>, N::kUnit,
-      {DstPred, DstPred, kKind, kKind, SrcPred}, &run_setp_combined<R, N, Op>,
+      name, type, 0, {DstPred, DstPred, type.source, type.source, SrcPred},
+      handlers_of(type, r).combined[combination],
       "Combines the comparison with a predicate, and the opposite comparison with the same predicate.",
-      {example(N::kTwo, kTruth.less, false), example(N::kTwo, kTruth.less, true),
-       example(N::kOne, kTruth.equal, false), example(N::kOne, kTruth.equal, true)});
+      {example(type.two, r.less, false), example(type.two, r.less, true), example(type.one, r.equal, false),
+       example(type.one, r.equal, true)});
 }
-template <class R, class N, Text kType, uint32_t kYes>
-constexpr OpRow set_row() {
-  constexpr OperandKind kKind = source_kind<typename N::Type>();
-  constexpr Truth kTruth = R::kTruth;
+constexpr OpRow set_row(std::string_view name, const Compared& type, const Relation& r,
+                        const Result& result) {
+  const uint32_t yes = kYes[result.yes];
   return comparison_row(
-      joined<"set", R::kName, N::kFlush, kType, N::kName>, N::kUnit, {Dst32, kKind, kKind},
-      &run_set<R, N, kYes>,
+      name, type, result.yes, {Dst32, type.source, type.source}, handlers_of(type, r).set,
       "Compares as setp does, but gives a value: 0 for false, and all ones or the float 1 for true.",
-      {{{N::kOne, N::kOne}, kTruth.equal ? kYes : 0}, {{N::kOne, N::kTwo}, kTruth.less ? kYes : 0}});
+      {{{type.one, type.one}, r.equal ? yes : 0}, {{type.one, type.two}, r.less ? yes : 0}});
 }
 
-// Makes the rows of one relation and type: setp, combined setp, and set.
-template <class R, class N>
-constexpr auto relation_rows(std::string_view doc) {
-  return joined_rows(setp_row<R, N>(doc), combined_row<R, N, And>(), combined_row<R, N, Or>(),
-                     combined_row<R, N, Xor>(), set_row<R, N, ".u32", 0xffff'ffffu>(),
-                     set_row<R, N, ".s32", 0xffff'ffffu>(), set_row<R, N, ".f32", 0x3f80'0000u>());
+using NameParts = std::initializer_list<std::string_view>;
+// Calls visit(parts of a name, make) for the rows of one relation and type, where make(name) gives the row.
+template <class Visit>
+constexpr void each_row(const Compared& type, const Relation& r, Visit&& visit) {
+  visit(NameParts{"setp", r.name, type.flush, type.name}, [&](auto name) { return setp_row(name, type, r); });
+  for (size_t c = 0; c < std::size(kCombinations); ++c)
+    visit(NameParts{"setp", r.name, kCombinations[c].name, type.flush, type.name},
+          [&](auto name) { return combined_row(name, type, r, c); });
+  for (const Result& result : kResults)
+    visit(NameParts{"set", r.name, type.flush, result.name, type.name},
+          [&](auto name) { return set_row(name, type, r, result); });
 }
 
 }  // namespace

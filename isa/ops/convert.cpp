@@ -25,6 +25,21 @@ template <class D, class S>
   return D(inside);
 }
 
+// Extends the low bits of a register, which T counts, by T's sign or zeros.
+template <class T, class R>
+struct Extended {
+  R operator()(auto word) const { return R(T(word)); }
+};
+// Converts an integer without clamping. The narrower of the types says which bits stay and how they are
+// extended, so few functions serve all pairs of types.
+template <class To, class From>
+struct Plain {
+  using Source = std::conditional_t<sizeof(From) == 8, uint64_t, uint32_t>;
+  using Result = Unsigned<Register<To>>;
+  using Narrow = std::conditional_t<sizeof(From) < sizeof(To), From, To>;
+  using Work = Extended<std::conditional_t<sizeof(Narrow) == sizeof(Result), Result, Narrow>, Result>;
+};
+
 template <class D, class S>
 constexpr auto pair_rows() {
   using To = typename D::Type;
@@ -36,9 +51,8 @@ constexpr auto pair_rows() {
           ? std::is_signed_v<From> ? "Widens with copies of the sign." : "Widens with zeros."
       : sizeof(To) < sizeof(From) ? "Keeps the low bits."
                                   : "Keeps the bits.";
-  constexpr OpRow kPlain = value_op<Register<From>>(
-      joined<"cvt", D::kName, S::kName>, Unit::Int, kDoc,
-      [](Register<From> x) { return Register<To>(To(From(x))); },
+  constexpr OpRow kPlain = value_op<typename Plain<To, From>::Source>(
+      joined<"cvt", D::kName, S::kName>, Unit::Int, kDoc, typename Plain<To, From>::Work{},
       {{{7}, 7},
        {{kMinusOne}, register_word<To>(To(From(-1)))},
        {{0x1'0000'0044 & register_word<From>(From(-1))},

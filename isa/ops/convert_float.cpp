@@ -152,8 +152,8 @@ inline uint32_t narrowed_nan(double nan) {
 // rounded to odd, so that the second rounding is the only one that counts. Recordings show that .ftz changes
 // nothing: a subnormal still rounds up or down to the least f16.
 template <class D, class S, Round kRound, bool kSat, bool kRelu>
-[[gnu::flatten]] void run_narrow(Warp& warp, const Inst& inst) {
-  if (ran_some_lanes<uint32_t>(warp, inst, &run_narrow<D, S, kRound, kSat, kRelu>)) return;
+[[gnu::flatten]] void run_narrow(Warp& warp, const Inst& inst, const OpRow& row) {
+  if (ran_some_lanes<uint32_t>(warp, inst, row, &run_narrow<D, S, kRound, kSat, kRelu>)) return;
   constexpr bool kFromDouble = std::is_same_v<S, TypeF64>;
   const Slot* const slot = &inst.operand.front();
   const Source<typename S::Type> source(warp, slot[1]);

@@ -25,8 +25,8 @@ template <class N, Round kRound, bool kRelu>
     all_lanes([&](int i) { out[i] = rounded_bfloat<kRound>(x[i]).bits; });
 }
 template <class N, Round kRound, bool kRelu>
-[[gnu::flatten]] void run_pair(Warp& warp, const Inst& inst) {
-  if (ran_some_lanes<uint32_t>(warp, inst, &run_pair<N, kRound, kRelu>)) return;
+[[gnu::flatten]] void run_pair(Warp& warp, const Inst& inst, const OpRow& row) {
+  if (ran_some_lanes<uint32_t>(warp, inst, row, &run_pair<N, kRound, kRelu>)) return;
   const Slot* const slot = &inst.operand.front();
   alignas(64) uint32_t high[kLanes], low[kLanes];
   narrow_row<N, kRound, kRelu>(Source<float>(warp, slot[1]), high);

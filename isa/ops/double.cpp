@@ -33,11 +33,22 @@ inline double with_nan(double result, double strongest, double strong, double we
   return with_nan(result, strongest, is_nan(strong) ? strong : weak);
 }
 
-struct Add : Sum {
+// These give a NaN result the NaN of that source, if it has one, then of the third source, then of the other.
+struct FirstNanWins {
+  double operator()(double result, double a) const { return with_nan(result, a); }
+  double operator()(double result, double a, double b) const { return with_nan(result, a, b); }
+};
+struct SecondNanWins {
+  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
+  double operator()(double result, double a, double b, double c) const { return with_nan(result, b, c, a); }
+};
+
+struct Add {
+  using Work = Sum;
   static constexpr Text kName = "add";
   static constexpr Text kDoc = "Adds";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
+  using Finish = SecondNanWins;
   static constexpr Examples examples(Round round) {
     const bool is_toward_zero = round == Round::Down || round == Round::Zero;
     return {{{kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
@@ -49,11 +60,12 @@ struct Add : Sum {
             {{kNan, kOne}, kNan}};
   }
 };
-struct Subtract : Difference {
+struct Subtract {
+  using Work = Difference;
   static constexpr Text kName = "sub";
   static constexpr Text kDoc = "Subtracts";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
+  using Finish = SecondNanWins;
   static constexpr Examples examples(Round round) {
     const bool is_toward_zero = round == Round::Down || round == Round::Zero;
     return {{{kOne, kTiny | kSign}, round == Round::Up ? kOne + 1 : kOne},
@@ -64,11 +76,12 @@ struct Subtract : Difference {
             {{kOne, kSignaling}, kSignaling | kQuiet}};
   }
 };
-struct Multiply : Product {
+struct Multiply {
+  using Work = Product;
   static constexpr Text kName = "mul";
   static constexpr Text kDoc = "Multiplies";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double result, double a, double b) const { return with_nan(result, b, a); }
+  using Finish = SecondNanWins;
   static constexpr Examples examples(Round round) {
     return {{{kOne + 1, kOne + 1}, round == Round::Up ? kOne + 3 : kOne + 2},
             {{kSign, kTwo}, kSign},
@@ -76,10 +89,11 @@ struct Multiply : Product {
             {{kNan, kSignaling}, kSignaling | kQuiet}};
   }
 };
-struct MultiplyAdd : ProductSum {
+struct MultiplyAdd {
+  using Work = ProductSum;
   static constexpr Text kDoc = "Multiplies and adds exactly";
   static constexpr Unit kUnit = Unit::Fp64;
-  double operator()(double result, double a, double b, double c) const { return with_nan(result, b, c, a); }
+  using Finish = SecondNanWins;
   static constexpr Examples examples(Round round) {
     return {{{kOne + 1, kOne + 1, (kOne + 2) | kSign}, 0x3970'0000'0000'0000},
             {{kOne, kOne, kTiny}, round == Round::Up ? kOne + 1 : kOne},
@@ -95,11 +109,12 @@ struct Fma : MultiplyAdd {
 struct Mad : MultiplyAdd {  // PTX's other name of fma
   static constexpr Text kName = "mad";
 };
-struct Divide : Quotient {
+struct Divide {
+  using Work = Quotient;
   static constexpr Text kName = "div";
   static constexpr Text kDoc = "Divides";
   static constexpr Unit kUnit = Unit::Fp64Div;
-  double operator()(double result, double a, double b) const { return with_nan(result, a, b); }
+  using Finish = FirstNanWins;
   static constexpr Examples examples(Round round) {
     return {{{kOne, kThree}, round == Round::Up ? kThird + 1 : kThird},
             {{kOne, kSign}, kInfinity | kSign},
@@ -107,22 +122,24 @@ struct Divide : Quotient {
             {{kNan, kSignaling}, kNan}};
   }
 };
-struct Reciprocal : Inverse {
+struct Reciprocal {
+  using Work = Inverse;
   static constexpr Text kName = "rcp";
   static constexpr Text kDoc = "Computes the reciprocal";
   static constexpr Unit kUnit = Unit::Fp64Div;
-  double operator()(double result, double a) const { return with_nan(result, a); }
+  using Finish = FirstNanWins;
   static constexpr Examples examples(Round round) {
     return {{{kThree}, round == Round::Up ? kThird + 1 : kThird},
             {{kSign}, kInfinity | kSign},
             {{kSignaling}, kSignaling | kQuiet}};
   }
 };
-struct SquareRoot : Root {
+struct SquareRoot {
+  using Work = Root;
   static constexpr Text kName = "sqrt";
   static constexpr Text kDoc = "Computes the square root";
   static constexpr Unit kUnit = Unit::Fp64Div;
-  double operator()(double result, double a) const { return with_nan(result, a); }
+  using Finish = FirstNanWins;
   static constexpr Examples examples(Round round) {
     const bool is_up = round == Round::Nearest || round == Round::Up;
     return {{{0x4010'0000'0000'0000}, kTwo},
@@ -135,9 +152,9 @@ struct SquareRoot : Root {
 // Makes the rows {.rn,.rz,.rm,.rp}.
 template <class Op, class... A>
 constexpr auto rounded = generated<4>([](auto i) {
-  return rounded_op<kRounds[i], Op, A...>(joined<Op::kName, round_name<kRounds[i]>, ".f64">, Op::kUnit,
-                                          joined<Op::kDoc, round_words<kRounds[i]>, ".">, Op{},
-                                          Op::examples(kRounds[i]));
+  return rounded_op<kRounds[i], typename Op::Work, A...>(
+      joined<Op::kName, round_name<kRounds[i]>, ".f64">, Op::kUnit,
+      joined<Op::kDoc, round_words<kRounds[i]>, ".">, typename Op::Finish{}, Op::examples(kRounds[i]));
 });
 
 // Returns signed integers that have the order of the doubles, with -0 before +0.

@@ -8,7 +8,7 @@
 
 namespace glint::isa::GLINT_ISA_PATH {
 
-void run_nothing(Warp&, const Inst&) {
+void run_nothing(Warp&, const Inst&, const OpRow&) {
 }
 
 std::span<const FamilyEntry> family_entries() {

@@ -36,7 +36,8 @@ struct Finish {
   }
 };
 
-struct Add : Sum {
+struct Add {
+  using Work = Sum;
   static constexpr Text kName = "add";
   static constexpr Text kDoc = "Adds";
   static constexpr Unit kUnit = Unit::Fp32;
@@ -51,7 +52,8 @@ struct Add : Sum {
             {{0x7fc0'0000, 1}, m.sat ? 0 : kNan}};
   }
 };
-struct Subtract : Difference {
+struct Subtract {
+  using Work = Difference;
   static constexpr Text kName = "sub";
   static constexpr Text kDoc = "Subtracts";
   static constexpr Unit kUnit = Unit::Fp32;
@@ -68,7 +70,8 @@ struct Subtract : Difference {
             {{kInfinity, kInfinity}, m.sat ? 0 : kNan}};
   }
 };
-struct Multiply : Product {
+struct Multiply {
+  using Work = Product;
   static constexpr Text kName = "mul";
   static constexpr Text kDoc = "Multiplies";
   static constexpr Unit kUnit = Unit::Fp32;
@@ -81,7 +84,8 @@ struct Multiply : Product {
             {{0, kInfinity}, m.sat ? 0 : kNan}};
   }
 };
-struct MultiplyAdd : ProductSum {
+struct MultiplyAdd {
+  using Work = ProductSum;
   static constexpr Text kDoc = "Multiplies and adds exactly";
   static constexpr Unit kUnit = Unit::Fp32;
   static constexpr Examples examples(Mode m) {
@@ -101,7 +105,8 @@ struct Fma : MultiplyAdd {
 struct Mad : MultiplyAdd {  // PTX's other name of fma
   static constexpr Text kName = "mad";
 };
-struct Divide : Quotient {
+struct Divide {
+  using Work = Quotient;
   static constexpr Text kName = "div";
   static constexpr Text kDoc = "Divides";
   static constexpr Unit kUnit = Unit::FpDiv;
@@ -113,7 +118,8 @@ struct Divide : Quotient {
             {{6, kTwo}, m.ftz ? 0u : 3u}};
   }
 };
-struct Reciprocal : Inverse {
+struct Reciprocal {
+  using Work = Inverse;
   static constexpr Text kName = "rcp";
   static constexpr Text kDoc = "Computes the reciprocal";
   static constexpr Unit kUnit = Unit::FpDiv;
@@ -125,7 +131,8 @@ struct Reciprocal : Inverse {
             {{0x7f00'0000}, m.ftz ? 0u : 0x0040'0000u}};
   }
 };
-struct SquareRoot : Root {
+struct SquareRoot {
+  using Work = Root;
   static constexpr Text kName = "sqrt";
   static constexpr Text kDoc = "Computes the square root";
   static constexpr Unit kUnit = Unit::FpDiv;
@@ -143,7 +150,7 @@ struct SquareRoot : Root {
 
 template <class Op, Round kRound, bool kFtz, bool kSat, class... A>
 constexpr OpRow arithmetic_row() {
-  return flushed_op<kRound, kFtz, Op, A...>(
+  return flushed_op<kRound, kFtz, typename Op::Work, A...>(
       joined<Op::kName, round_name<kRound>, when<kFtz, ".ftz">, when<kSat, ".sat">, ".f32">, Op::kUnit,
       joined<Op::kDoc, round_words<kRound>, when<kFtz, kFtzWords>, when<kSat, kSatWords>, ".">,
       Finish<kSat>{}, Op::examples({.round = kRound, .ftz = kFtz, .sat = kSat}));

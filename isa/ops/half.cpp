@@ -171,8 +171,8 @@ template <uint32_t kLeast>
 // pair are handled one after the other.
 template <class Format, bool kPair, class Op, bool kFtz, bool kSat, bool kRelu>
 struct Arithmetic {
-  [[gnu::flatten]] static void run(Warp& warp, const Inst& inst) {
-    if (ran_some_lanes<uint32_t>(warp, inst, &run)) return;
+  [[gnu::flatten]] static void run(Warp& warp, const Inst& inst, const OpRow& row) {
+    if (ran_some_lanes<uint32_t>(warp, inst, row, &run)) return;
     alignas(64) uint32_t low[kLanes], high[kLanes];
     half<false>(warp, inst, low);
     if constexpr (kPair) half<true>(warp, inst, high);

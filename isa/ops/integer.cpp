@@ -32,6 +32,18 @@ struct MulLow {
     return T(Wrapping<T>(a) * Wrapping<T>(b));
   }
 };
+struct MadLow {
+  template <class T>
+  T operator()(T a, T b, T c) const {
+    return Add{}(MulLow{}(a, b), c);
+  }
+};
+struct ShiftRight {
+  template <class T>
+  T operator()(T a, uint32_t n) const {
+    return shifted_right(a, n);
+  }
+};
 struct MulHigh {
   template <class T>
   T operator()(T a, T b) const {
@@ -48,21 +60,22 @@ inline int32_t clamped(int64_t x) {
 template <class N>
 constexpr auto sum_rows() {
   using T = typename N::Type;
+  using U = Unsigned<T>;  // where signed and unsigned numbers give the same bits, they share a handler
   constexpr uint64_t kOnes = word(T(-1)), kHigh = word(Unsigned<T>(Unsigned<T>(1) << (kBits<T> - 1)));
   return joined_rows(
-      binary<T>(joined<"add", N::kName>, Unit::Int, "Adds. The carry is lost.", Add{},
+      binary<U>(joined<"add", N::kName>, Unit::Int, "Adds. The carry is lost.", Add{},
                 {{{1, 2}, 3}, {{7, word(T(-7))}, 0}, {{kHigh, kHigh}, 0}}),
-      binary<T>(joined<"sub", N::kName>, Unit::Int, "Subtracts. The borrow is lost.", Sub{},
+      binary<U>(joined<"sub", N::kName>, Unit::Int, "Subtracts. The borrow is lost.", Sub{},
                 {{{3, 2}, 1}, {{0, 1}, kOnes}}),
-      binary<T>(joined<"mul.lo", N::kName>, Unit::Int, "Returns the low half of the product.", MulLow{},
+      binary<U>(joined<"mul.lo", N::kName>, Unit::Int, "Returns the low half of the product.", MulLow{},
                 {{{3, 5}, 15}, {{kOnes, kOnes}, 1}}),
       binary<T>(joined<"mul.hi", N::kName>, Unit::Int, "Returns the high half of the product.", MulHigh{},
                 {{{3, 5}, 0},
                  {{kOnes, kOnes}, std::is_signed_v<T> ? 0 : kOnes - 1},
                  {{kHigh, 2}, kHigh == word(kLowest<T>) ? kOnes : 1}}),
-      ternary<T>(
-          joined<"mad.lo", N::kName>, Unit::Int, "Adds the low half of the product and the third source.",
-          [](T a, T b, T c) { return Add{}(MulLow{}(a, b), c); }, {{{3, 5, 1}, 16}, {{kHigh, 2, 7}, 7}}),
+      ternary<U>(joined<"mad.lo", N::kName>, Unit::Int,
+                 "Adds the low half of the product and the third source.", MadLow{},
+                 {{{3, 5, 1}, 16}, {{kHigh, 2, 7}, 7}}),
       ternary<T>(joined<"mad.hi", N::kName>, Unit::Int,
                  "Adds the high half of the product and the third source.",
                  [](T a, T b, T c) { return Add{}(product_high(a, b), c); },
@@ -224,7 +237,7 @@ constexpr auto shift_rows() {
       std::is_signed_v<T>
           ? "Shifts right, and copies of the sign enter. A count of the width or more gives the sign."
           : "Shifts right, and zeros enter. A count of the width or more gives 0.",
-      [](T a, uint32_t n) { return shifted_right(a, n); },
+      ShiftRight{},
       {{{13, 2}, 3},
        {{kOnes, kBits<T>}, std::is_signed_v<T> ? kOnes : 0},
        {{kOnes, 0xffff'ffff}, std::is_signed_v<T> ? kOnes : 0}}));

@@ -1,6 +1,7 @@
 // Defines ops that copy: moves, selections, and the packing of registers.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
+#include <type_traits>
 
 #include "isa/integer_kernels.h"
 #include "isa/ops/families.h"
@@ -21,29 +22,39 @@ constexpr auto copy_rows() {
 }
 
 // In slct the sign of the third source chooses. Bits are copied, whatever their type.
+struct BySign {
+  template <class T>
+  T operator()(T a, T b, auto c) const {
+    return c >= 0 ? a : b;
+  }
+};
+struct ByFlushedSign {
+  template <class T>
+  T operator()(T a, T b, float c) const {
+    return c > -0x1p-126f ? a : b;
+  }
+};
 template <class N>
 constexpr auto select_rows() {
-  using T = typename N::Type;
+  using T = std::make_unsigned_t<typename N::Type>;
   return joined_rows(
       value_op<T, T, int32_t>(joined<"slct", N::kName, ".s32">, Unit::Int,
                               "Returns the first source where the third is 0 or more, else the second.",
-                              [](T a, T b, int32_t c) { return c >= 0 ? a : b; },
-                              {{{3, 4, 0}, 3}, {{3, 4, 0xffff'ffff}, 4}}),
+                              BySign{}, {{{3, 4, 0}, 3}, {{3, 4, 0xffff'ffff}, 4}}),
       value_op<T, T, float>(joined<"slct", N::kName, ".f32">, Unit::Fp32,
                             "Returns the first source where the third is 0 or more, also for -0, else (also "
                             "for NaN) the second.",
-                            [](T a, T b, float c) { return c >= 0.0f ? a : b; },
+                            BySign{},
                             {{{3, 4, 0x8000'0000}, 3}, {{3, 4, 0x8000'0001}, 4}, {{3, 4, 0x7fc0'0000}, 4}}),
       value_op<T, T, float>(
           joined<"slct.ftz", N::kName, ".f32">, Unit::Fp32,
           "Returns the first source where the third is 0, subnormal or more, else (also for NaN) the second.",
-          [](T a, T b, float c) { return c > -0x1p-126f ? a : b; },
-          {{{3, 4, 0x8000'0001}, 3}, {{3, 4, 0x8080'0000}, 4}, {{3, 4, 0x7fc0'0000}, 4}}));
+          ByFlushedSign{}, {{{3, 4, 0x8000'0001}, 3}, {{3, 4, 0x8080'0000}, 4}, {{3, 4, 0x7fc0'0000}, 4}}));
 }
 
 // Splits a register (pair) into parts, low first, which go to the low ends of `kParts` registers.
 template <class T, int kParts>
-[[gnu::flatten]] void run_unpack(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void run_unpack(Warp& warp, const Inst& inst, const OpRow&) {
   constexpr int kPartBits = kBits<T> / kParts;
   const Slot* const slot = &inst.operand.front();
   const Source<T> source(warp, slot[kParts]);

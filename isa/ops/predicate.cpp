@@ -14,7 +14,7 @@ void run_masks(Warp& warp, const Inst& inst, std::index_sequence<N...>) {
   write_predicate(warp, slot[0], F{}(predicate[slot[N + 1]]...));
 }
 template <class F, size_t kSources>
-void run_mask_op(Warp& warp, const Inst& inst) {
+void run_mask_op(Warp& warp, const Inst& inst, const OpRow&) {
   run_masks<F>(warp, inst, std::make_index_sequence<kSources>{});
 }
 

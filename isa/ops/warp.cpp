@@ -81,7 +81,7 @@ template <class Visit>
 // does not execute, the register is read as it is, which PTX leaves open.
 enum class Shuffle { Up, Down, Butterfly, Index };
 template <Shuffle kMode>
-[[gnu::flatten]] void shuffle(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void shuffle(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<uint32_t> a(warp, slot_at(inst, 2)), b(warp, slot_at(inst, 3)), c(warp, slot_at(inst, 4));
   struct Source32 {
     uint32_t lane, inside;  // inside: 1 when the lane is in the segment
@@ -107,7 +107,7 @@ template <Shuffle kMode>
 
 enum class Vote { All, Any, Uniform };
 template <Vote kVote>
-[[gnu::flatten]] void vote(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void vote(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<bool> a(warp, slot_at(inst, 1));
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   const LaneMask votes = a.mask;
@@ -119,7 +119,7 @@ template <Vote kVote>
                                        : all | !any);
   });
 }
-[[gnu::flatten]] void ballot(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void ballot(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<bool> a(warp, slot_at(inst, 1));
   uint32_t result[kLanes]{};  // separate, because the destination may be the masks
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
@@ -164,7 +164,7 @@ template <class T>
 }
 // Returns for each lane the members with its value.
 template <class T>
-[[gnu::flatten]] void match_any(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void match_any(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<T> a(warp, slot_at(inst, 1));
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   alignas(64) LaneMask result[kLanes], members_of[kLanes]{};
@@ -176,7 +176,7 @@ template <class T>
 }
 // Returns the members and true if all have one value, and otherwise no lanes and false.
 template <class T>
-[[gnu::flatten]] void match_all(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void match_all(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<T> a(warp, slot_at(inst, 2));
   const Source<uint32_t> masks(warp, slot_at(inst, 3));
   uint32_t result[kLanes]{};
@@ -218,7 +218,7 @@ template <int kHalf, class F, class T>
 }
 // Combines the members' values. The neutral value stands for the other lanes.
 template <class T, T kNeutral, class F>
-[[gnu::flatten]] void reduce(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void reduce(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<T> a(warp, slot_at(inst, 1));
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   uint32_t result[kLanes]{};
@@ -231,11 +231,11 @@ template <class T, T kNeutral, class F>
   write_lanes<uint32_t>(warp, slot_at(inst, 0), [&](int i) { return result[i]; });
 }
 
-void active_mask(Warp& warp, const Inst& inst) {
+void active_mask(Warp& warp, const Inst& inst, const OpRow&) {
   broadcast(warp, slot_at(inst, 0), warp.exec, warp.exec);
 }
 // Returns the lowest member, and whether it is the lane itself.
-[[gnu::flatten]] void elect(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void elect(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<uint32_t> masks(warp, slot_at(inst, 2));
   uint32_t result[kLanes]{};
   LaneMask leaders = 0;

@@ -27,7 +27,7 @@ class Runner {
       fixture_.at(inst_.operand[1], lane) = a(uint32_t(lane));
       if (row_.operands.count > 2) fixture_.at(inst_.operand[2], lane) = b(uint32_t(lane));
     }
-    row_.run(fixture_.warp, inst_);
+    row_.run(fixture_.warp, inst_, row_);
     return &fixture_.at(inst_.operand[0], 0);
   }
   template <class A>

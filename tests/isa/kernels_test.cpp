@@ -36,7 +36,7 @@ double max_error(const char* name, uint32_t first, uint32_t last, uint32_t step,
       const uint32_t x = uint32_t(std::min<uint64_t>(bits + uint64_t(lane) * step, last));
       w.at(inst.operand[1], lane) = both_signs && lane % 2 ? x | 0x8000'0000u : x;
     }
-    row.run(w.warp, inst);
+    row.run(w.warp, inst, row);
     for (int lane = 0; lane < kLanes; ++lane) {
       const double x = double(std::bit_cast<float>(w.at(inst.operand[1], lane)));
       worst = std::max(worst, error_ulps(std::bit_cast<float>(w.at(inst.operand[0], lane)), exact(x)));

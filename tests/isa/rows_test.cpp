@@ -56,7 +56,7 @@ std::vector<uint32_t> run_random(const OpRow& row, uint16_t op, uint64_t seed, L
   for (int r = 0; r < WarpFixture::kRows; ++r)
     for (int lane = 0; lane < kLanes; ++lane) w.at(r, lane) = test_word(seed);
   w.warp.exec = exec;
-  row.run(w.warp, spread(row, op));
+  row.run(w.warp, spread(row, op), row);
   return w.snapshot();
 }
 
@@ -115,7 +115,7 @@ TEST_CASE(
           WarpFixture before;
           before.warp.predicate = w.warp.predicate;
           w.warp.exec = exec;
-          row.run(w.warp, inst);
+          row.run(w.warp, inst, row);
           const OperandKind kind = row.operands.kind[0];
           INFO(name_of(path) << " " << row.name << " mask " << exec);
           int wrong = 0;
@@ -182,7 +182,7 @@ TEST_CASE("results that only rounding lifts to the least normal number are flush
         WarpFixture w;
         fill(w, seed);
         w.warp.exec = kAllLanes;
-        of.run(w.warp, spread(of, 0));
+        of.run(w.warp, spread(of, 0), of);
         return std::vector<uint32_t>(&w.at(0, 0), &w.at(0, 0) + kLanes);
       };
       const auto expected = run(row);
@@ -237,8 +237,8 @@ TEST_CASE("a destination may be any of its sources") {
           for (int p = 0; p < kNumPredicates; ++p)
             a.warp.predicate[p] = b.warp.predicate[p] = uint32_t(next_random(seed));
           a.warp.exec = b.warp.exec = s % 2 ? kAllLanes : kSparse;
-          row.run(a.warp, apart);
-          row.run(b.warp, same);
+          row.run(a.warp, apart, row);
+          row.run(b.warp, same, row);
           int wrong = 0;
           for_each_lane(a.warp.exec, [&](int lane) {
             wrong += a.get(row.operands.kind[0], apart.operand[0], lane) !=
@@ -275,7 +275,7 @@ TEST_CASE("memory and texture ops form the addresses of the active lanes and tou
               is_wide ? 0x1'0000'0008ull + uint64_t(lane) * 4 : uint64_t(lane) * 4);
       const auto before = w.snapshot();
       w.warp.exec = kSparse;
-      row.run(w.warp, inst);
+      row.run(w.warp, inst, row);
       CHECK(w.snapshot() == before);
       for_each_lane(kSparse, [&](int lane) {
         const uint64_t base = is_wide ? 0x1'0000'0008ull + uint64_t(lane) * 4 : uint64_t(lane) * 4;

@@ -37,7 +37,7 @@ struct OperandList {
 
 // Passes on operand kSlot, the handle, for all lanes. The machine reads the other operands itself.
 template <int kSlot>
-[[gnu::flatten]] void form_image_access(Warp& warp, const Inst& inst) {
+[[gnu::flatten]] void form_image_access(Warp& warp, const Inst& inst, const OpRow&) {
   const Source<uint32_t> handle(warp, inst.operand[kSlot]);
   Address* const address_out = &warp.access.address.front();
   all_lanes([&](int i) { address_out[i] = handle.at(i); });

@@ -81,7 +81,7 @@ class Machine {
   void perform(const isa::Inst& inst, LaneMask exec) {
     const isa::OpRow& row = isa::op_table()[inst.op];
     warp_->exec = exec;
-    row.run(*warp_, inst);
+    row.run(*warp_, inst, row);
     for_each_lane(exec, [&](int lane) {
       LaneWorld& world = lanes[size_t(lane)];
       if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store) access(inst, row, lane);
