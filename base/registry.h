@@ -94,6 +94,11 @@ bool PolicyChoice<Interface>::is_in_interval_model() const {
   return Registry<Interface>::instance().entry(name).is_in_interval_model;
 }
 
+template <class Impl>
+concept InIntervalModel = requires {
+  requires Impl::kInIntervalModel;
+};
+
 template <class Interface, class Impl>
 struct Register {
   using Params = typename Impl::Params;
@@ -113,7 +118,7 @@ struct Register {
          [](typename Interface::Context context) -> std::unique_ptr<Interface> {
            return std::make_unique<Impl>(Params{}, context);
          },
-         requires { requires Impl::kInIntervalModel; }});
+         InIntervalModel<Impl>});
   }
 };
 
