@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/params.h"
@@ -57,3 +59,12 @@ struct GpuParams {
 };
 
 }  // namespace glint::pipeline
+
+namespace glint {
+
+// check_params.cpp has the code of these two: to read and to describe a few hundred keys takes seconds to
+// compile.
+extern template void read_params(ConfigTable&, pipeline::GpuParams&);
+extern template std::vector<ParamInfo> describe_params(const pipeline::GpuParams&, const std::string&);
+
+}  // namespace glint

@@ -72,7 +72,7 @@ class EmbreeIntersector final : public Intersector {
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, model.vertices.size()));
     for (size_t i = 0; i < model.vertices.size(); ++i)
-      std::memcpy(positions + 3 * i, model.vertices[i].position.data(), 12);
+      std::memcpy(positions + 3 * i, &model.vertices[i].position[0], 12);
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
                                             model.indices.size() / 3);
     std::memcpy(indices, model.indices.data(), model.indices.size() * 4);
