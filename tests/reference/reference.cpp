@@ -237,7 +237,7 @@ class Renderer {
   void miss(const Ray& ray) {
     ray_.color = {};
     if (uniforms_.has_sky)
-      ray_.color = mix({1, 1, 1}, {0.5f, 0.7f, 1}, 0.5f * (normalize(ray.direction).y + 1.0f));
+      ray_.color = mix(Vec(1), Vec(0.5f, 0.7f, 1), 0.5f * (normalize(ray.direction).y + 1.0f));
     ray_.distance = -1;
   }
 

@@ -66,7 +66,7 @@ TEST_CASE("the projection's inverse maps a corner of the screen to aspect, tange
   const CameraMatrices m = camera_matrices({.eye = {0, 0, 5}, .target = {0, 0, 0}, .field_of_view = 90}, 2);
   const auto row = [&](size_t r) {
     const Mat4& p = m.projection_inverse;
-    return p[r] * 1 + p[4 + r] * 1 + p[8 + r] * 1 + p[12 + r] * 1;
+    return p[0][r] * 1 + p[1][r] * 1 + p[2][r] * 1 + p[3][r] * 1;
   };
   CHECK(row(0) == Approx(2));
   CHECK(row(1) == Approx(-1));  // y points down on the screen
