@@ -41,7 +41,8 @@ function(glint_library name)
     # The whole archive is linked, because a static library drops objects that nothing refers to, and with them the registrations.
     set_property(GLOBAL APPEND PROPERTY GLINT_LIBRARIES glint_${name}_policies)
     set_target_properties(glint_${name}_policies PROPERTIES EXPORT_NAME ${name}_policies)
-    target_link_libraries(glint_${name} PUBLIC "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint_${name}_policies>")
+    add_library(glint::${name}_policies ALIAS glint_${name}_policies)
+    target_link_libraries(glint_${name} PUBLIC "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint::${name}_policies>")
   endif()
 endfunction()
 

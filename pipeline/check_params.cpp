@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <string>
+#include <vector>
 
 #include "memsys/request.h"
 

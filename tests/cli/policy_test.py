@@ -86,7 +86,7 @@ class Plugin(GlintTest):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(list(json.loads((self.folder / "out/run.json").read_text())["plugins"]), [str(plugin)])
         self.assertIn('issue = "youngest"', (self.folder / "out/config.toml").read_text())
-        self.assertRegex(self.installed("list", "policies", "--plugin", plugin).stdout, r"core\.issue +youngest +The ready warp")
+        self.assertRegex(self.installed("list", "policies", "--plugin", plugin).stdout, r"core\.issue +youngest +A scheduler issues from")
         suite = ["bench", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", "core.issue=youngest", "--out", "suite", "--plugin", plugin]
         self.assertEqual(self.installed(*suite).returncode, 0)
         self.assertIn("1 of them complete", self.installed(*suite, "--resume").stdout + self.installed(*suite, "--resume").stderr)

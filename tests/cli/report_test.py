@@ -156,7 +156,7 @@ class Page(ReportTest):
         page = self.document((self.folder / "suite/report.html").read_text())
         self.assertEqual([run["metrics"]["cycles"] for run in page["runs"]], [self.total(name, "gpu.cycles") for name in sorted(self.runs)])
         self.write("none/metrics.csv", "workload\n")
-        self.expect(2, ["none", "not a run directory", "glint bench"], "report", "none")
+        self.expect(2, ["none", "no run directory", "glint bench"], "report", "none")
 
     def test_bad_input_is_refused_with_a_reason(self):
         copy = self.folder / "copy"

@@ -6,6 +6,7 @@
 string(REGEX REPLACE ".*::([a-z0-9]+)::$" "\\1" path "${SCOPE}")
 string(LENGTH "${path}" length)
 set(mangled "_ZNK?5glint3isa${length}${path}")
+list(FILTER OBJECTS INCLUDE REGEX "\\.o$")  # a target has its precompiled headers, too
 foreach(object ${OBJECTS})
   execute_process(COMMAND ${NM} -C ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "[^\n]* [WVu] [^\n]*" shared "${symbols}")

@@ -212,7 +212,7 @@ TEST_CASE("Speed-ups of a subset are those of its own workloads", "[characterize
   CHECK(std::abs(found.subset.mean - std::sqrt(2.0)) < 1e-12);
   CHECK(found.subset.slowest == "B");
   CHECK_THROWS_WITH(speed_ups(before, "before", after, "after", {"D"}),
-                    Catch::Contains("after: error: has no cycles of D"));
+                    Catch::Contains("after: error: this table has no cycles of D"));
 }
 
 TEST_CASE("Tables that cannot be compared are refused with the reason", "[characterize]") {
