@@ -10,7 +10,7 @@
 
 namespace glint::test {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 LabOptions fault_options(bool timing, exec::OnFault on_fault) {
   LabOptions options;

@@ -7,7 +7,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using exec::FaultKind;
 
 constexpr uint32_t kThreads = 64, kWords = 40;  // two blocks; elements of `data`: word i is 100 + i

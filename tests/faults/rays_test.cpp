@@ -6,7 +6,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using exec::FaultKind;
 
 const std::string kPlace = "glsl/faults/rays.rgen:16";

@@ -11,7 +11,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 const std::string kPrintf = "#extension GL_EXT_debug_printf : require\n";
 

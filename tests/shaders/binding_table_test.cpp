@@ -11,7 +11,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 // Has shaders 0 to 4: ray generation, miss, closest-hit, intersection, callable. Each has a group, and the
 // fourth group has both hit shaders.

@@ -14,7 +14,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 uint32_t bits(float x) {
   return std::bit_cast<uint32_t>(x);

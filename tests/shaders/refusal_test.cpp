@@ -7,7 +7,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 template <class Kind>
 std::string message_of(const std::string& file) {

@@ -13,7 +13,7 @@
 namespace glint::test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 void each_machine(const ComputeLab& fresh, const std::function<void(ComputeLab&)>& check) {
   for (const LabOptions& options : compute_lab_options()) {

@@ -8,7 +8,7 @@
 namespace glint::exec {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 const std::string kStore = "    st.global.v2.b32 [%rd2], {%r10, %r11};\n    exit;\n";
 
