@@ -79,9 +79,9 @@ TEST_CASE(
 TEST_CASE("callables nested deeper than the pipeline allows are a fault that names shader and depth") {
   RayLab lab = callables_lab();
   lab.max_callable_depth = 3;
-  CHECK_THROWS_WITH(
-      lab.run(), Catch::Matchers::Contains("calls a callable shader at depth 4, and the pipeline allows 3") &&
-                     Catch::Matchers::Contains(".rcall:"));
+  CHECK_THROWS_WITH(lab.run(),
+                    Catch::Contains("calls a callable shader at depth 4, and the pipeline allows 3") &&
+                        Catch::Contains(".rcall:"));
 }
 
 TEST_CASE(

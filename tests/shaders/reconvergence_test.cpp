@@ -80,7 +80,7 @@ TEST_CASE("what a module calls unreachable stops the run when a lane comes there
     INFO(to_string(options));
     ComputeLab lab("traps/unreachable.spvasm");
     lab.buffers[0] = Words(4);
-    CHECK_THROWS_WITH(lab.run(options), Catch::Matchers::Contains("trap"));
+    CHECK_THROWS_WITH(lab.run(options), Catch::Contains("trap"));
   }
 }
 

@@ -41,8 +41,7 @@ TEST_CASE(
   Diagnostics warnings;
   frontend::compile_file(lab_file("compute/lengths.comp"), {}, {}, warnings);
   REQUIRE(warnings.messages().size() == 1);
-  CHECK_THAT(warnings.messages()[0],
-             Catch::Matchers::Contains("kParts") && Catch::Matchers::Contains("taken as 1"));
+  CHECK_THAT(warnings.messages()[0], Catch::Contains("kParts") && Catch::Contains("taken as 1"));
 }
 
 TEST_CASE("arrays of constant lengths, and lengths that are not 0, are left as they are") {

@@ -172,7 +172,7 @@ TEST_CASE("a trace deeper than the pipeline allows is a fault that names the sha
                {"recursion.rchit", "", "pair.rint"}},
               {}});
   lab.max_trace_depth = 3;
-  CHECK_THROWS_WITH(lab.run(), Catch::Matchers::Contains("recursion.rchit:14"));
+  CHECK_THROWS_WITH(lab.run(), Catch::Contains("recursion.rchit:14"));
 }
 
 TEST_CASE("hit and miss shaders that pass on their own payload share it with all depths") {
