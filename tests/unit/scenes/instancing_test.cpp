@@ -3,12 +3,12 @@
 #include "scenes/instancing.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
 
 #include "scenes/import/asset_folder.h"
 #include "scenes/mesh.h"
+#include "tests/support/catch.h"
 
 namespace {
 
