@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cstdio>
 #include <fmt/format.h>
 #include <utility>
 
@@ -49,19 +50,28 @@ std::string format_integer(const Conversion& c, uint64_t bits) {
   return padded(c, sign, digits, c.zeros && c.precision < 0);
 }
 
+// Writes a number in C's hexadecimal form, by the C library: versions of fmt differ in the exponent of 0 and
+// in the rounding of ties.
+std::string hexadecimal(const Conversion& c, double value) {
+  const std::string format = std::string(c.alternative ? "%#" : "%") +
+                             (c.precision >= 0 ? fmt::format(".{}", c.precision) : "") + c.letter;
+  std::string out(size_t(std::snprintf(nullptr, 0, format.c_str(), value)) + 1, ' ');
+  std::snprintf(out.data(), out.size(), format.c_str(), value);
+  out.pop_back();  // the zero byte
+  return out;
+}
+
 std::string format_float(const Conversion& c, uint64_t bits) {
   const double value = c.is_wide ? std::bit_cast<double>(bits) : double(std::bit_cast<float>(uint32_t(bits)));
   const bool is_number = value == value && value - value == 0;
   const bool negative = std::bit_cast<uint64_t>(value) >> 63 != 0 && value == value;
-  std::string format = c.alternative ? "{:#" : "{:";
-  if (c.precision >= 0)
-    format += fmt::format(".{}", c.precision);
-  else if (c.letter != 'a' && c.letter != 'A')
-    format += ".6";  // C's default precision
+  const bool is_hexadecimal = c.letter == 'a' || c.letter == 'A';
+  const std::string format =  // C's default precision is 6
+      fmt::format("{{:{}.{}", c.alternative ? "#" : "", c.precision >= 0 ? c.precision : 6);
   const double magnitude = std::bit_cast<double>(std::bit_cast<uint64_t>(value) & ~(uint64_t{1} << 63));
-  const std::string digits = fmt::format(fmt::runtime(format + c.letter + "}"), magnitude);
-  if (!is_number || (c.letter != 'a' && c.letter != 'A'))
-    return padded(c, sign_of(c, negative), digits, c.zeros && is_number);
+  const std::string digits = is_hexadecimal ? hexadecimal(c, magnitude)
+                                            : fmt::format(fmt::runtime(format + c.letter + "}"), magnitude);
+  if (!is_number || !is_hexadecimal) return padded(c, sign_of(c, negative), digits, c.zeros && is_number);
   // The zeros come after 0x.
   return padded(c, sign_of(c, negative) + digits.substr(0, 2), digits.substr(2), c.zeros);
 }
