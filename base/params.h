@@ -6,8 +6,7 @@
 //     std::string scheduler = "gto";
 //     UnitParams sfu;
 //     static constexpr auto params() {
-//       return std::tuple{param(&Params::warps, "warps", "warp", "Number of resident warps of a core.", 1,
-//       64),
+//       return std::tuple{param(&Params::warps, "warps", "warp", "Number of resident warps.", 1, 64),
 //                         choice(&Params::scheduler, "scheduler", "Issue policy.", &policy_names),
 //                         section(&Params::sfu, "sfu", "Special-function unit.")};
 //     }

@@ -16,11 +16,15 @@ KEYS = {"*.replacement": "memory.l1.replacement"}
 NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"]}
 
 
+def listed(glint) -> list[list[str]]:
+    """Folder, key, name and doc of every policy, as `glint list policies` prints them."""
+    lines = subprocess.run([glint, "list", "policies"], capture_output=True, text=True, check=True).stdout.splitlines()
+    return [re.split(r" {2,}", line.strip(), maxsplit=3) for line in lines]
+
+
 def policies(glint) -> list[tuple[str, str]]:
     """Key and name of every policy that a configuration can choose."""
-    listed = subprocess.run([glint, "list", "policies"], capture_output=True, text=True, check=True).stdout
-    rows = [re.split(r" {2,}", line.strip(), maxsplit=3)[1:3] for line in listed.splitlines()]
-    return [(KEYS.get(key, key), name) for key, name in rows if not key.startswith("(")]
+    return [(KEYS.get(key, key), name) for _, key, name, _ in listed(glint) if not key.startswith("(")]
 
 
 def measure(glint, key: str, name: str, folder: pathlib.Path) -> tuple[int, str]:

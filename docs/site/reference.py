@@ -7,6 +7,7 @@ import subprocess
 from typing import Any
 
 import help_text
+import policy_table
 
 
 def _run(glint, *words):
@@ -59,8 +60,7 @@ def policies(glint: str) -> str:
     """What can be chosen by name, by key."""
     by_key: dict[str, list[tuple[str, str]]] = {}
     folders: dict[str, str] = {}
-    for line in _run(glint, "list", "policies").splitlines():
-        folder, key, name, doc = re.split(r" {2,}", line.strip(), maxsplit=3)
+    for folder, key, name, doc in policy_table.listed(glint):
         by_key.setdefault(key, []).append((name, doc))
         folders[key] = folder
     text = ["# Policies\n\nA policy is a choice that the configuration makes by name. Each policy is one file of its folder; [this page](../howto/policy.md) shows how to add one. `glint list policies` prints all of them.\n"]

@@ -12,6 +12,7 @@
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/image_size.h"
+#include "apps/glint/options/resources.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 
@@ -22,8 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kMark = "workload.json";
 
 std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return text_of_file(path).value_or("");
 }
 
 // Hashes the names and contents of the shaders, so that edited shaders give new results.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "report/files/run_directory.h"
@@ -59,9 +60,9 @@ std::string Resources::config_path(const std::string& name_or_path) const {
 
 std::string read_file(const std::string& path) {
   std::error_code error;
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path, error)) throw UserError({path}, "cannot read the file");
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::optional<std::string> text = text_of_file(path);
+  if (!text || fs::is_directory(path, error)) throw UserError({path}, "cannot read the file");
+  return std::move(*text);
 }
 
 std::optional<std::string> text_of_file(const std::string& path) {

@@ -15,6 +15,7 @@
 #include <optional>
 #include <toml++/toml.h>
 
+#include "apps/glint/options/resources.h"
 #include "pipeline/description/value.h"
 
 namespace glint::app {
@@ -234,9 +235,9 @@ class Reader {
 
   void fill_from_file(const toml::table& table, LaunchArgument& out, std::optional<int64_t> bytes) {
     const std::string file = beside(text(table, "file").value_or(""));
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return errors_.error(out.where, fmt::format("cannot read '{}'", file));
-    const std::string data{std::istreambuf_iterator<char>(in), {}};
+    const std::optional<std::string> read = text_of_file(file);
+    if (!read) return errors_.error(out.where, fmt::format("cannot read '{}'", file));
+    const std::string& data = *read;
     out.bytes.resize(bytes ? size_t(*bytes) : data.size());
     if (data.size() > out.bytes.size() || out.bytes.empty())
       return errors_.error(out.where, fmt::format("'{}' has {} bytes, and the buffer has {}", file,

@@ -9,6 +9,7 @@
 
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/options/resources.h"
 #include "apps/glint/run/launch_file.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pipeline/kernel_launch.h"
@@ -19,9 +20,9 @@ namespace glint::app {
 namespace {
 
 std::string read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw UserError({}, fmt::format("cannot read '{}'", path));
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::optional<std::string> text = text_of_file(path);
+  if (!text) throw UserError({}, fmt::format("cannot read '{}'", path));
+  return std::move(*text);
 }
 
 // Holds a kernel in memory, with one buffer address per argument, which is 0 for numbers.
