@@ -1,4 +1,4 @@
-// Policy: how the messages of cores and L2 slices reach each other.
+// Interface: brings the messages of cores and L2 slices to each other.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -15,7 +15,7 @@ struct Packet;
 struct Reply;
 template <class Sent, class Received>
 class NetworkPort;
-using CorePort = NetworkPort<Packet, Reply>;   // a core's end (network_port.h)
+using CorePort = NetworkPort<Packet, Reply>;   // the end of a core (messages/network_port.h)
 using SlicePort = NetworkPort<Reply, Packet>;  // the end of a slice of the L2
 
 // A network makes one port for each core and each slice. The port belongs to the cell of its user, and the
@@ -28,7 +28,7 @@ using SlicePort = NetworkPort<Reply, Packet>;  // the end of a slice of the L2
 //    accepts one again after slices have taken some. A slice's port always accepts replies;
 //  - packets make progress as long as slices take them, also while cores take no replies;
 //  - cells share nothing but the channels, and no message arrives sooner than shortest_latency() after the
-//    cycle it was sent in: windows, threads and the order of cells change nothing;
+//    cycle in which it was sent: windows, threads and the order of cells change nothing;
 //  - there is no heap traffic once warm.
 class Network {
  public:

@@ -1,4 +1,4 @@
-// One direction of a port or a wire of the network: how long it takes for a message.
+// Models one direction of a port or a wire of the network: how long a message occupies it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -20,8 +20,8 @@ class Link {
   Cycle leave(Cycle ready, uint32_t bytes) { return free_at_ = std::max(ready, free_at_) + cycles(bytes); }
 
   // Returns the cycle in which the link has received all of a message whose tail arrives at `tail` after
-  // `sent_cycles` on the link before. Unloaded and equally wide, receiving overlaps sending and costs nothing
-  // more.
+  // `sent_cycles` on the link before. When both links are unloaded and equally wide, receiving overlaps
+  // sending and takes no further cycle.
   Cycle received_at(Cycle tail, Cycle sent_cycles, uint32_t bytes) const {
     const Cycle head = tail - sent_cycles;
     return std::max(tail, std::max(head, free_at_) + cycles(bytes));

@@ -1,4 +1,4 @@
-// One end of the network: where a core or a slice sends messages and takes those that have come.
+// Models one end of the network, at which a core or a slice sends messages and takes those that have come.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -14,26 +14,27 @@
 
 namespace glint::mem {
 
-// Where a port hands a message to.
+// Says where a port hands a message to.
 template <class Message>
 struct Route {
   FanIn<Message>* inbox = nullptr;
   Cycle latency = 0;       // cycles from the end of the message's time in the port to its arrival
-  uint16_t allowance = 0;  // which of the sender's counts of credits the message draws on
+  uint16_t allowance = 0;  // number of the sender's count of credits that pays for the message
 };
 
-// What a network connects a port to.
+// Holds what a network connects a port to.
 template <class Sent, class Received>
 struct PortWiring {
-  uint16_t index = 0;                     // of the port as a producer in the inboxes that it sends to
-  uint32_t send_bytes = 0;                // bytes a cycle that the port sends
-  uint32_t receive_bytes = 0;             // bytes a cycle that the port receives
-  uint32_t incoming_bytes = 0;            // bytes a cycle of the link that the messages come by
-  std::vector<Route<Sent>> routes{};      // by destination
-  FanIn<Received>* inbox = nullptr;       // messages to this port
-  std::vector<uint32_t> credits{};        // at the start, by Route::allowance; empty: there is always room
+  uint16_t index = 0;                 // the port's number as a producer in the inboxes that it sends to
+  uint32_t send_bytes = 0;            // bytes per cycle that the port sends
+  uint32_t receive_bytes = 0;         // bytes per cycle that the port receives
+  uint32_t incoming_bytes = 0;        // bytes per cycle of the link by which messages come
+  std::vector<Route<Sent>> routes{};  // by destination
+  FanIn<Received>* inbox = nullptr;   // messages to this port
+  std::vector<uint32_t> credits{};  // credits at the start, by Route::allowance; empty: there is always room
   FanIn<Credit>* credit_inbox = nullptr;  // credits to this port; null when `credits` is empty
-  std::vector<Route<Credit>> returns{};   // by source: where the credit of a taken message goes; empty: none
+  std::vector<Route<Credit>>
+      returns{};  // where the credit of a taken message goes, by source; empty: nowhere
 };
 
 // Messages leave in the order in which they are sent, one after another, each when the network has given a
@@ -48,14 +49,14 @@ class NetworkPort {
         receive_link_(wiring_.receive_bytes),
         incoming_link_(wiring_.incoming_bytes) {}
 
-  // Returns the first cycle, not before `ready`, in which a message to `destination` can start to leave, or
-  // kNever when that takes a credit that has not come.
+  // Returns the first cycle, not before `ready`, in which a message to `destination` can start to leave. It
+  // is kNever when the message needs a credit that has not come.
   Cycle departure(Cycle ready, uint16_t destination) const {
     if (!credits_.empty() && credits_[wiring_.routes[destination].allowance] == 0) return kNever;
     return std::max({ready, send_link_.free_at(), last_credit_});
   }
-  // Sends a message for which there is a credit. It starts to leave at `now` or, behind others, when the port
-  // is free; returns that cycle.
+  // Sends a message for which there is a credit. The message starts to leave at `now` or, behind others, when
+  // the port is free. Returns the cycle in which it starts.
   Cycle send(Cycle now, const Sent& message) {
     const Route<Sent>& route = wiring_.routes[destination_of(message)];
     const Cycle start = std::max(now, send_link_.free_at());
@@ -73,8 +74,8 @@ class NetworkPort {
   }
   Cycle next_credit() const { return wiring_.credit_inbox ? wiring_.credit_inbox->arrival() : kNever; }
 
-  // Of the oldest message: the cycle in which its tail arrived, and the cycle in which the port has received
-  // all of it. Both are kNever when there is no message.
+  // Return, of the oldest message, the cycle in which its tail arrived, and the cycle in which the port has
+  // received all of it. Both are kNever when there is no message.
   Cycle arrival() const { return wiring_.inbox->arrival(); }
   Cycle received() const {
     if (arrival() == kNever) return kNever;
@@ -92,14 +93,14 @@ class NetworkPort {
     }
     wiring_.inbox->pop();
   }
-  // Messages on their way to this port, as far as its inbox knows them.
+  // Returns the number of messages on their way to this port, as far as its inbox knows them.
   size_t waiting() const { return wiring_.inbox->waiting(); }
 
  private:
   PortWiring<Sent, Received> wiring_;
   std::vector<uint32_t> credits_;
   Link send_link_, receive_link_;
-  Link incoming_link_;  // only to know how long a message took on the link before
+  Link incoming_link_;  // tells only how long a message took on the link before
   Cycle last_credit_ = 0;
 };
 

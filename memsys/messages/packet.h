@@ -1,4 +1,4 @@
-// The messages that cross the network between L1 caches and L2 slices, and their sizes.
+// Declares the messages that cross the network between L1 caches and L2 slices, and their sizes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Packet {
 
 // Allows the sender of a message to send another one (network_port.h). A credit travels beside the messages.
 struct Credit {
-  uint16_t allowance = 0;  // which of the sender's counts grows
+  uint16_t allowance = 0;  // number of the sender's count that grows
 };
 
 // From a slice of the L2 to an L1: sectors of a line. A packet may be answered by several replies, sector by

@@ -1,4 +1,4 @@
-// Network `crossbar`: a switch that connects every core to every slice of the L2.
+// Implements the network `crossbar`: a switch connects every core to every slice of the L2.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
@@ -12,8 +12,8 @@
 namespace glint::mem {
 namespace {
 
-// Model: the switch inside never blocks; the ports and, towards the slices, the credits limit. A core has
-// credits for each slice, and a slice returns one when it has taken a packet.
+// Model: the switch inside never blocks. Only the ports limit the traffic, and towards the slices the credits
+// do, too. A core has credits for each slice, and a slice returns a credit when it has taken a packet.
 class Crossbar final : public Network {
  public:
   static constexpr const char* kName = "crossbar";
@@ -70,14 +70,14 @@ class Crossbar final : public Network {
     for (const auto& channel : credits_) out.push_back(channel.get());
     return out;
   }
-  // A port needs at least one cycle for any message, on top of the way.
+  // Any message takes at least one cycle of a port before its way through the switch.
   Cycle shortest_latency() const override {
     return 1 + std::min(params_.request_latency, params_.reply_latency);
   }
 
  private:
-  // Cycles between a core and a slice, one way, beyond the latency of the network: they may lie on different
-  // sides of the chip.
+  // Returns the cycles, one way, that a core and a slice on different sides of the chip add to the latency of
+  // the network.
   Cycle far_latency(uint32_t core, uint32_t slice) const {
     const uint64_t sides = params_.sides;
     return core * sides / num_cores_ == slice * sides / num_slices_ ? 0 : params_.far_latency;
@@ -87,7 +87,7 @@ class Crossbar final : public Network {
   const uint32_t num_cores_, num_slices_;
   std::vector<std::unique_ptr<FanIn<Packet>>> requests_;  // by slice
   std::vector<std::unique_ptr<FanIn<Reply>>> replies_;    // by core
-  std::vector<std::unique_ptr<FanIn<Credit>>> credits_;   // by core; none when they are unlimited
+  std::vector<std::unique_ptr<FanIn<Credit>>> credits_;   // by core; empty when credits are unlimited
 };
 
 const Register<Network, Crossbar> registered;

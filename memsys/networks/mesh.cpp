@@ -1,4 +1,5 @@
-// Network `mesh`: a grid of routers with buffers; messages go along their row first, then along their column.
+// Implements the network `mesh`: a grid of routers with buffers. Messages go along their row, then their
+// column.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -26,7 +27,7 @@ struct MeshParams {
   uint32_t buffer = 10;        // guess: a credit's round trip between two routers
   uint32_t port_latency = 16;  // guess: with 4 hops, a way takes the 48 cycles of the crossbar of `mobile`
   uint32_t entry_buffer = 34;  // guess: a credit's round trip between a port and its router
-  uint32_t exit_buffer = 34;   // guess: the same
+  uint32_t exit_buffer = 34;   // guess: a credit's round trip between a router and its port
 
   static constexpr auto params() {
     return std::tuple{
@@ -53,7 +54,7 @@ struct MeshParams {
 // The routers stand in rows of `width`, and each serves at most one port.
 struct Grid {
   uint32_t width = 1, routers = 1;
-  std::vector<uint32_t> cores, slices;  // the router of each
+  std::vector<uint32_t> cores, slices;  // number of the router that serves each
 
   // Choice: the slices stand evenly among the cores.
   Grid(uint32_t num_cores, uint32_t num_slices) {
@@ -130,14 +131,14 @@ class Plane final : public Cell {
   struct Input {
     explicit Input(uint32_t entries) : queue(entries), freed(entries) {}
     Ring<Held> queue;
-    Cycle free_at = 0;   // the last message has left
+    Cycle free_at = 0;   // cycle in which the last message has left
     uint32_t taken = 0;  // entries in use, as far as the router before knows
-    Ring<Cycle> freed;   // when it will know of entries that are free again
+    Ring<Cycle> freed;   // cycles in which it will know of entries that are free again
   };
   struct Output {
     Cycle free_at = 0;
-    uint32_t turn = 0;  // the input that goes first
-    uint32_t room = 0;  // of Own: credits of the destination
+    uint32_t turn = 0;  // number of the input that goes first
+    uint32_t room = 0;  // credits of the destination; only Own has some
   };
   struct Router {
     explicit Router(const MeshParams& params) : inputs(NumSides, Input(params.buffer)) {
@@ -233,10 +234,11 @@ class Plane final : public Cell {
   const uint32_t width_;
   const std::vector<uint32_t> from_, to_;
   std::vector<Router> routers_;
-  FanIn<Message> entries_;                                     // of all sources
-  std::vector<std::unique_ptr<FanIn<Message>>> exits_;         // by destination
-  FanIn<Credit> exit_credits_;                                 // of all destinations
-  std::vector<std::unique_ptr<FanIn<Credit>>> entry_credits_;  // by source; none when they need none
+  FanIn<Message> entries_;                              // messages of all sources
+  std::vector<std::unique_ptr<FanIn<Message>>> exits_;  // by destination
+  FanIn<Credit> exit_credits_;                          // credits of all destinations
+  std::vector<std::unique_ptr<FanIn<Credit>>>
+      entry_credits_;  // by source; empty when sources need no credits
   uint64_t held_ = 0, moves_ = 0;
 };
 
