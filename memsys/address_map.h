@@ -1,4 +1,4 @@
-// Where a physical address lives: its L2 slice and partition, and its bank, row and column there.
+// Maps a physical address to its L2 slice and partition, and to its bank and row there.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -35,7 +35,7 @@ class PartitionMap {
   uint32_t slices() const { return slices_; }
 
  private:
-  // The finaliser of MurmurHash3 (Appleby): every input bit reaches every output bit.
+  // Returns the finaliser of MurmurHash3 (Appleby), in which every input bit reaches every output bit.
   static uint64_t hash(uint64_t x) {
     x = (x ^ (x >> 33)) * 0xff51'afd7'ed55'8ccdull;
     x = (x ^ (x >> 33)) * 0xc4ce'b9fe'1a85'ec53ull;

@@ -1,4 +1,4 @@
-// Allocation and fault explanation of the simulated address space.
+// Allocates simulated memory, and explains where an access outside all allocations would have gone.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/address_space.h"
 
@@ -61,7 +61,7 @@ std::string AddressSpace::explain(Address address, uint64_t bytes) const {
     if (offset < a.bytes)
       return fmt::format("{} bytes across the end of '{}' ({} bytes), {} of them past it", bytes, a.name,
                          a.bytes, offset + bytes - a.bytes);
-    // The upper half of a slot is nearer to the next allocation: an index below its start.
+    // The upper half of a slot is nearer to the next allocation, whose index was below its start.
     const bool before_next = offset >= kSlot / 2 && index + 1 < allocations_.size();
     if (!before_next)
       return fmt::format("{} bytes past the end of '{}' ({} bytes)", offset - a.bytes, a.name, a.bytes);

@@ -1,4 +1,4 @@
-// The bytes of simulated memory: allocations in a 64-bit virtual space in which every overrun shows.
+// Holds the bytes of simulated memory: allocations in a 64-bit virtual space in which every overrun shows.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -15,15 +15,16 @@ namespace glint::mem {
 // Every allocation starts at a multiple of 4 GiB. The upper 32 bits of an address name the allocation, and an
 // index that runs past the end, or before the start, falls where nothing is. Allocation 0 is never used, so
 // null pointers fault. Choice: Vulkan leaves addresses open.
-// Physical addresses pack the allocations densely, as a driver would. Caches and DRAM see only these.
+// Physical addresses pack the allocations densely, as a driver would do. Caches and DRAM see only physical
+// addresses.
 class AddressSpace {
  public:
   static constexpr int kShift = 32;
 
   struct Allocation {
-    std::string name;  // for messages: "binding 4 (Vertices)"
+    std::string name;  // name in messages, such as "binding 4 (Vertices)"
     uint64_t bytes = 0;
-    Address physical = 0;  // of byte 0; aligned to 256 B
+    Address physical = 0;  // address of byte 0; aligned to 256 bytes
     std::byte* data = nullptr;
   };
 
@@ -35,7 +36,7 @@ class AddressSpace {
   // Allocates bytes that are 0 and aligned to 64 bytes on the host. A size past 4 GiB takes several
   // consecutive allocation numbers.
   Address allocate(std::string name, uint64_t bytes);
-  // Reserves physical bytes for the machine, which no program can address; returns the first.
+  // Reserves physical bytes for the machine, which no program can address. Returns the address of the first.
   Address reserve(uint64_t bytes);
 
   // Returns a host pointer to [address, address + bytes), or null when any byte lies outside an allocation.

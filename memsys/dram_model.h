@@ -1,4 +1,4 @@
-// Policy: how long a memory channel takes for the requests of its L2 slices.
+// Interface: says when a memory channel has served the requests of its L2 slices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -15,19 +15,19 @@ namespace glint::mem {
 
 struct DramParams;
 
-// Read data that has left the data bus.
+// Describes read data that have left the data bus.
 struct DramReturn {
-  Cycle ready = 0;  // core cycle in which its last transfer is over
+  Cycle ready = 0;  // core cycle in which the last transfer is over
   Address line = 0;
   uint8_t sectors = 0;
-  Cycle command = 0;  // core cycle of its column command
+  Cycle command = 0;  // core cycle of the column command
 };
 
 // Contract (tests/contract/memsys/dram_model_test.cpp):
 //  - Every read that was added comes back once in returns(), in order of `ready`, which is later than its
 //    add(). Writes give nothing back.
 //  - A request holds an entry of the queue from add() on. Calls of advance() at next_command() free entries
-//    without further requests, so full() ends.
+//    without further requests, so full() does not stay true.
 //  - Results do not depend on how often advance() is called, as long as it is called at each next_command().
 //  - Every clock up to finish() is counted in `use` once, and data move no faster than the bus.
 //  - The model allocates nothing once it is warm.
@@ -48,25 +48,26 @@ class DramModel {
   virtual void add(Cycle now, Address line, uint8_t sectors, Address local, bool write) = 0;
   // Simulates the command clocks up to core cycle `now`.
   virtual void advance(Cycle now) = 0;
-  virtual void finish(Cycle end) = 0;  // attributes the clocks up to the end of the run
+  virtual void finish(Cycle end) = 0;  // counts the clocks up to the end of the run in `use`
   Cycle next_command() const { return next_step_ == kNever ? kNever : clocks_.cycle_after(next_step_); }
-  Ring<DramReturn>& returns() { return returns_; }  // in order of `ready`, which may lie ahead
+  Ring<DramReturn>& returns() { return returns_; }  // is in order of `ready`, which may lie in the future
   const Ring<DramReturn>& returns() const { return returns_; }
   size_t in_flight() const { return in_flight_; }
   bool finished() const { return in_flight_ == 0 && returns_.empty(); }
   const DramStats& stats() const { return stats_; }
   const ClockDomains& clocks() const { return clocks_; }
-  DramClock data_clocks() const { return data_clocks_; }  // clocks of the data bus that a request takes
+  // Returns the clocks of the data bus that a request takes.
+  DramClock data_clocks() const { return data_clocks_; }
 
  protected:
-  DramModel(const Context& context, DramClock data_clocks);  // in dram_params.h
+  DramModel(const Context& context, DramClock data_clocks);  // is defined in dram_params.h
 
   const ClockDomains clocks_;
   const DramClock data_clocks_;
   DramStats stats_;
   Ring<DramReturn> returns_;
   DramClock next_step_ = kNever;
-  size_t in_flight_ = 0;  // requests whose column command has not gone out
+  size_t in_flight_ = 0;  // number of requests whose column command has not gone out
   const size_t capacity_;
 };
 

@@ -1,4 +1,4 @@
-// Policy: which waiting request a free DRAM bank gets next.
+// Interface: chooses which waiting request a free DRAM bank gets next.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace glint::mem {
 struct DramRequest {
   uint32_t bank = 0;
   uint32_t row = 0;
-  uint64_t age = 0;  // of two requests, the older has the smaller number
+  uint64_t age = 0;  // number in order of arrival: the older of two requests has the smaller one
   bool write = false;
 };
 
@@ -28,7 +28,7 @@ class DramScheduler {
     uint32_t capacity = 0;  // number of slots
   };
   static constexpr uint32_t kNone = ~0u;
-  static constexpr uint32_t kClosed = ~0u;  // as `open_row`: the bank has none
+  static constexpr uint32_t kClosed = ~0u;  // value of `open_row` for a bank without an open row
 
   virtual ~DramScheduler() = default;
   virtual void add(uint32_t slot, const DramRequest& request) = 0;

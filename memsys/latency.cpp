@@ -1,4 +1,4 @@
-// Sums and percentiles of latencies, and the names of their buckets.
+// Adds up latencies, finds their percentiles, and names their buckets.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/latency.h"
 
@@ -8,7 +8,7 @@
 namespace glint::mem {
 namespace {
 
-// Returns the last latency of a bucket.
+// Returns the largest latency of a bucket.
 Cycle high_of(uint32_t bucket) {
   return Latencies::low_of(bucket + 1) - 1;
 }

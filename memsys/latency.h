@@ -1,4 +1,4 @@
-// How long the reads of a run take: counts by traffic class and latency, and percentiles of them.
+// Counts how long the reads of a run take, by traffic class and latency, and gives percentiles of them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace glint::mem {
 
-// Counts latencies by traffic class, in buckets. Below 16 cycles each cycle has a bucket, and above each
-// octave has eight, so that the width of a bucket is at most an eighth of its lower end. The last bucket
-// takes all latencies from 983,040 cycles on.
+// Counts latencies by traffic class, in buckets. Below 16 cycles each cycle has a bucket. From there on each
+// octave has eight buckets, so that the width of a bucket is at most an eighth of its lower end. The last
+// bucket takes all latencies from 983,040 cycles on.
 class Latencies {
  public:
   static constexpr uint32_t kExact = 16, kOctaves = 16, kSteps = 8, kBuckets = kExact + kOctaves * kSteps;
@@ -49,7 +49,7 @@ class Latencies {
   std::array<OfClass, size_t(Traffic::Count)> classes_{};
 };
 
-// The sum of several Latencies as statistics. All parts are added before any statistic is read.
+// Gives the sum of several Latencies as statistics. All parts are added before any statistic is read.
 class LatencyStats : public stats::Group {
  public:
   // `what` says for the documentation which reads are counted and what is measured.
@@ -62,7 +62,7 @@ class LatencyStats : public stats::Group {
   uint64_t percentile(Traffic traffic, uint32_t of_100) const;
 
  private:
-  // One number for each traffic class that has reads.
+  // Gives one number for each traffic class that has reads.
   class ByTraffic final : public stats::BreakdownBase {
    public:
     ByTraffic(LatencyStats* of, std::string_view name, std::string_view unit, std::string_view doc,
@@ -74,7 +74,8 @@ class LatencyStats : public stats::Group {
     const LatencyStats& of_;
     uint64_t (*read_)(const LatencyStats&, Traffic);
   };
-  // The number of reads for each class and bucket that has any; a name is "rt_node:64-71".
+  // Gives the number of reads for each class and bucket that has any. The name of such a number is, for
+  // example, "rt_node:64-71".
   class Buckets final : public stats::BreakdownBase {
    public:
     Buckets(LatencyStats* of, std::string_view doc);
@@ -82,7 +83,7 @@ class LatencyStats : public stats::Group {
 
    private:
     const LatencyStats& of_;
-    std::vector<std::string> names_;  // by class, then bucket
+    std::vector<std::string> names_;  // by class, then by bucket
   };
   uint64_t count(Traffic traffic, uint32_t bucket) const;
 

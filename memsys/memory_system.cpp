@@ -1,4 +1,4 @@
-// Construction of the memory system, and the checks at the end of a run that nothing was lost.
+// Builds the memory system, and checks at the end of a run that nothing was lost.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/memory_system.h"
 
@@ -75,10 +75,10 @@ void MemorySystem::check_drained() const {
   check_conserved();
 }
 
-// Checks that what left one level arrived at the next: nothing is counted twice or lost.
+// Checks that what left one level arrived at the next, and that nothing was counted twice or lost.
 void MemorySystem::check_conserved() const {
-  uint64_t sent = 0, received = 0;         // bytes
-  uint64_t timed = load_latency_.total();  // reads
+  uint64_t sent = 0, received = 0;         // bytes that L1s have counted, less those that slices have
+  uint64_t timed = load_latency_.total();  // reads that were timed, less those that L1s took
   for (const auto& l1 : l1s_) {
     const L1Stats& s = l1->stats();
     GLINT_CHECK_EQ(s.reads.total(), s.hits.total() + s.pending_hits.total() + s.misses.total());

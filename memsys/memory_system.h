@@ -1,4 +1,4 @@
-// The whole memory system of a machine: every core's L1, the network, every partition.
+// Models the whole memory system of a machine: the L1 of every core, the network, and every partition.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -27,19 +27,20 @@ class MemorySystem {
   const Partition& partition(uint32_t index) const { return *partitions_[index]; }
   Partition& partition(uint32_t index) { return *partitions_[index]; }
   uint32_t num_cores() const { return uint32_t(l1s_.size()); }
-  Cycle written_until() const;  // the end of the last write that reached a slice of the L2
+  Cycle written_until() const;  // returns the end of the last write that reached a slice of the L2
   uint32_t num_partitions() const { return uint32_t(partitions_.size()); }
   const PartitionMap& map() const { return map_; }
 
-  std::vector<Cell*> cells();  // the partitions, then the routers of the network
+  std::vector<Cell*> cells();  // returns the partitions, then the routers of the network
   std::vector<ChannelBase*> channels() { return network_->channels(); }
-  // Returns the longest window that the engine may use, at least 1: no message arrives sooner.
+  // Returns the longest window that the engine may use, which is at least 1: no message arrives sooner.
   Cycle shortest_latency() const { return network_->shortest_latency(); }
 
-  // Attributes the cycles up to the end of the run. It is called once, before statistics are read.
+  // Counts the cycles up to the end of the run under their reasons. It is called once, before statistics are
+  // read.
   void finish(Cycle end);
-  void check_drained()
-      const;  // at the end of a run: every request was answered and nothing is left; aborts otherwise
+  // Aborts unless, at the end of a run, every request was answered and nothing is left.
+  void check_drained() const;
 
  private:
   void check_conserved() const;

@@ -29,7 +29,7 @@ using SlicePort = NetworkPort<Reply, Packet>;  // the end of a slice of the L2
 //  - packets make progress as long as slices take them, also while cores take no replies;
 //  - cells share nothing but the channels, and no message arrives sooner than shortest_latency() after the
 //    cycle in which it was sent: windows, threads and the order of cells change nothing;
-//  - there is no heap traffic once warm.
+//  - there is no heap traffic once the network is warm.
 class Network {
  public:
   static constexpr PolicyKind kKind{"memory.noc.topology", "memsys/networks"};

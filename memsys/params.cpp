@@ -1,4 +1,4 @@
-// Which memory configurations are impossible, and the names of the choices.
+// Checks which memory configurations are impossible, and names the choices.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/params.h"
 
@@ -23,7 +23,7 @@ class Checker {
     require(value >= 1, fmt::format("'{}' is 0, expected at least 1", key), why);
   }
   void cache(const char* key, uint64_t size, uint32_t ways, uint32_t line) {
-    if (!std::has_single_bit(line)) return;  // reported already
+    if (!std::has_single_bit(line)) return;  // check() reports it
     require(size >= line,
             fmt::format("'{}' is {} bytes, expected at least one line of {} bytes", key, size, line));
     const uint64_t set = uint64_t{std::max(ways, 1u)} * line;
@@ -37,7 +37,7 @@ class Checker {
   }
 
  private:
-  // Puts the section in front of each key. Messages quote keys and nothing else.
+  // Puts the section in front of each key, because messages quote keys and nothing else.
   std::string with_section(const std::string& what) const {
     std::string out;
     bool opens = true;
@@ -104,7 +104,8 @@ void check(const Params& p, Diagnostics& diagnostics, const std::string& section
   c.at_least_one("l2.mshr_entries", p.l2.mshr_entries, "no miss could ever leave the slice");
   c.at_least_one("l2.mshr_merges", p.l2.mshr_merges, "the read that misses itself waits in the entry");
   c.at_least_one("l2.sectors_per_cycle", p.l2.sectors_per_cycle, "no request would ever be served");
-  const uint32_t whole_line = 2 * p.line / kSectorBytes;  // a miss and the write-back of its victim
+  // A miss of a whole line and the write-back of its victim must fit.
+  const uint32_t whole_line = 2 * p.line / kSectorBytes;
   c.require(
       p.l2.dram_queue >= whole_line,
       fmt::format("'l2.dram_queue' is {}, expected at least {}: the sectors of a line and of its victim",

@@ -1,4 +1,5 @@
-// Parameters of the memory system: L1, network, L2 and DRAM, and the check for impossible ones.
+// Declares the parameters of the memory system (L1, network, L2 and DRAM), and the check that finds
+// impossible ones.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -17,26 +18,26 @@ namespace glint::mem {
 
 // The defaults are the mobile part of Vulkan-Sim 2.0 and LumiBench (8 cores, 4 channels), with physical DRAM
 // timing.
-std::vector<std::string> l1_allocations();    // on_fill, on_miss
-std::vector<std::string> partition_hashes();  // mixed, none
+std::vector<std::string> l1_allocations();    // returns on_fill and on_miss
+std::vector<std::string> partition_hashes();  // returns mixed and none
 
 struct L1Params {
   uint64_t size = 32 * 1024;  // Vulkan-Sim MOBILE: S:1:128:256
   uint32_t ways = 0;
   PolicyChoice<Replacement> replacement{"lru"};  // Vulkan-Sim: "L"
   uint32_t hit_latency = 20;                     // Vulkan-Sim: gpgpu_l1_latency
-  uint32_t miss_latency = 20;                    // the same; tags are looked up at the end of the pipeline
-  uint32_t ports = 1;                            // Volta's L1 delivers one line of 128 B a cycle
+  uint32_t miss_latency = 20;                    // as hit_latency; tags are looked up at the pipeline's end
+  uint32_t ports = 1;                            // Volta's L1 delivers one line of 128 bytes per cycle
   uint32_t banks = 1;
   uint32_t mshr_entries = 256;  // Vulkan-Sim: A:256:8
   uint32_t mshr_merges = 8;
   uint32_t miss_queue = 16;      // Vulkan-Sim: 16
-  bool local_write_back = true;  // Vulkan-Sim: "L", local write-back, global write-through
+  bool local_write_back = true;  // Vulkan-Sim: "L", which writes local memory back and global through
   bool global_write_back = false;
   bool write_allocate = false;       // Vulkan-Sim: "N"; Accel-Sim's newer parts allocate
   bool write_evict = false;          // GPGPU-Sim's global stores drop what they hit
   std::string allocate = "on_fill";  // Vulkan-Sim: "s", streaming
-  bool fill_takes_access = true;     // Choice: arrays of one port; unpublished
+  bool fill_takes_access = true;     // Choice: arrays have one port; vendors do not publish it
 
   static constexpr auto params() {
     return std::tuple{
@@ -82,15 +83,16 @@ struct L1Params {
 };
 
 struct NocParams {
-  PolicyChoice<Network> topology{"crossbar"};  // Choice: unpublished
-  uint32_t core_request_bytes = 40;            // Vulkan-Sim: icnt_flit_size, one flit a cycle
+  PolicyChoice<Network> topology{"crossbar"};  // Choice: vendors do not publish it
+  uint32_t core_request_bytes = 40;            // Vulkan-Sim: icnt_flit_size, one flit per cycle
   uint32_t core_reply_bytes = 40;
   uint32_t partition_request_bytes = 40;
   uint32_t partition_reply_bytes = 40;
-  uint32_t request_latency = 48;  // with the L1 and L2 latencies: L2 hits take 160 cycles (TTA's baseline)
+  // With the latencies of L1 and L2, an L2 hit takes 160 cycles (TTA's baseline).
+  uint32_t request_latency = 48;
   uint32_t reply_latency = 48;
-  uint32_t credits = 16;  // Choice: as many as the miss queue of an L1 has entries; unpublished
-  uint32_t sides = 1;     // an H100 has 2; the far side costs 156 cycles more, there and back
+  uint32_t credits = 16;  // Choice: as many as an L1's miss queue has entries; vendors do not publish it
+  uint32_t sides = 1;     // an H100 has 2; the far side takes 156 cycles more, there and back
   uint32_t far_latency = 0;
 
   static constexpr auto params() {
@@ -128,21 +130,23 @@ struct NocParams {
 
 struct L2Params {
   uint32_t slices = 1;               // Vulkan-Sim MOBILE: one sub-partition
-  uint64_t slice_size = 128 * 1024;  // Vulkan-Sim: S:64:128:16 a partition
+  uint64_t slice_size = 128 * 1024;  // Vulkan-Sim: S:64:128:16 for a partition
   uint32_t ways = 16;
   PolicyChoice<Replacement> replacement{"lru"};  // Vulkan-Sim: "L"
   uint32_t latency = 42;                         // see NocParams::request_latency
-  uint32_t sectors_per_cycle = 2;                // measured on H100: two sectors a clock and slice
+  uint32_t sectors_per_cycle = 2;                // measured on H100: two sectors per clock and slice
   uint32_t mshr_entries = 192;                   // Vulkan-Sim: A:192:4
   uint32_t mshr_merges = 4;
-  uint32_t dram_queue = 64;      // Vulkan-Sim: dram_partition_queues
-  uint32_t atomic_interval = 2;  // Choice: unpublished; an H200 has 2 and 1/8 a lane (docs/validation.md)
+  uint32_t dram_queue = 64;  // Vulkan-Sim: dram_partition_queues
+  // Choice: vendors do not publish it. An H200 takes 2 cycles, and 1/8 cycle per lane (docs/validation.md).
+  uint32_t atomic_interval = 2;
   double atomic_lane_interval = 0;
-  // An H200 has 1.25, with one cycle for a whole sector and 1.31 for a sector in part (docs/validation.md).
+  // A write takes 1.25 cycles on an H200, with one more for each whole sector and 1.31 for each sector that
+  // is written in part (docs/validation.md).
   double write_visit = 0;
   double partial_interval = 0;
-  bool write_masks = true;         // GPGPU-Sim: byte masks; a sector is fetched when it is read
-  bool fill_takes_service = true;  // Choice: arrays of one port; unpublished
+  bool write_masks = true;         // GPGPU-Sim has byte masks and fetches a sector when it is read
+  bool fill_takes_service = true;  // Choice: arrays have one port; vendors do not publish it
 
   static constexpr auto params() {
     return std::tuple{
@@ -192,7 +196,7 @@ struct L2Params {
 };
 
 struct Params {
-  uint32_t line = 128;        // Volta and later: 4 sectors of 32 B
+  uint32_t line = 128;        // Volta and later have 4 sectors of 32 bytes
   uint32_t interleave = 256;  // GPGPU-Sim: dramid@8
   std::string hash = "mixed";
   L1Params l1;

@@ -1,4 +1,4 @@
-// The events of a partition: its DRAM channel and its slices, cycle by cycle.
+// Advances the DRAM channel and the slices of a partition, cycle by cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/partition.h"
 

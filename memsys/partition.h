@@ -1,4 +1,4 @@
-// A memory partition: a DRAM channel with the L2 slices in front of it, a cell of its own.
+// Models a memory partition as one cell: a DRAM channel with the L2 slices in front of it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,18 +16,19 @@
 
 namespace glint::mem {
 
-// A memory channel begins to work with its first request, and ends when it has answered all requests.
+// Tells that a memory channel began to work or stopped. It begins with a request, and stops when it has
+// answered all requests.
 struct DramTurn {
   Cycle cycle = 0;
-  bool works = false;     // whether it works from this cycle on
-  uint64_t requests = 0;  // requests that it has taken since the launch
+  bool works = false;     // whether the channel works from this cycle on
+  uint64_t requests = 0;  // number of requests that the channel has taken since the launch
 };
 
 // Slices take turns to hand requests to DRAM; the requests of one slice keep their order. Every cycle of a
 // slice is counted under one reason.
 class Partition final : public Cell {
  public:
-  // `ports`: one for each slice of this partition.
+  // `ports` has one port for each slice of this partition.
   Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz,
             std::vector<SlicePort> ports, stats::Group* parent);
 
@@ -37,13 +38,13 @@ class Partition final : public Cell {
   uint64_t progress() const override;
   std::string describe_stall() const override;
 
-  void finish(Cycle end);  // attributes the cycles up to the end of the run
+  void finish(Cycle end);  // counts the cycles up to the end of the run under their reasons
   IntervalSampler& sampler() { return sampler_; }
   const DramModel& dram() const { return *dram_; }
   Probe<DramTurn>& dram_turned() { return dram_turned_; }
   uint32_t num_slices() const { return uint32_t(slices_.size()); }
   const L2Slice& slice(uint32_t index) const { return *slices_[index]; }
-  const L2Stats& stats() const { return slices_[0]->stats(); }  // of the first slice
+  const L2Stats& stats() const { return slices_[0]->stats(); }  // are those of the first slice
   // Returns the sum of a count over the slices.
   uint64_t sum(uint64_t (*of)(const L2Slice&)) const;
   uint64_t packets_received() const {
@@ -70,7 +71,7 @@ class Partition final : public Cell {
   const PartitionMap map_;
   const std::unique_ptr<DramModel> dram_;
   std::vector<std::unique_ptr<L2Slice>> slices_;
-  size_t turn_ = 0;      // the slice that may hand over first
+  size_t turn_ = 0;      // number of the slice that may hand over first
   bool worked_ = false;  // whether the channel worked at the end of the last step
   Probe<DramTurn> dram_turned_;
   IntervalSampler sampler_;

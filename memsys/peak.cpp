@@ -1,4 +1,4 @@
-// Peak bandwidths and capacities, and the warnings that follow from them.
+// Computes peak bandwidths and capacities, and the warnings that follow from them.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/peak.h"
 
@@ -14,13 +14,13 @@ double gigabytes(double bytes) {
   return bytes / 1e9;
 }
 
-// Returns the data bytes a cycle of a port when every reply has one sector. A reply takes whole cycles.
+// Returns the data bytes per cycle of a port when every reply has one sector. A reply takes whole cycles.
 double data_rate(uint32_t port_bytes) {
   const uint32_t packet = kSectorBytes + kHeaderBytes;
   return double(kSectorBytes) / double((packet + port_bytes - 1) / port_bytes);
 }
 
-// Returns the better of this and the rate of replies with a whole line, which fill wide ports better.
+// Returns the larger of data_rate() and the rate of replies with a whole line, which fill wide ports better.
 double best_data_rate(uint32_t port_bytes, uint32_t line) {
   const uint32_t packet = line + kHeaderBytes;
   return std::max(data_rate(port_bytes), double(line) / double((packet + port_bytes - 1) / port_bytes));
@@ -40,8 +40,8 @@ Peak peak(const Params& p, uint32_t num_cores, double core_mhz) {
   out.l2_bandwidth = hz * slices * p.l2.sectors_per_cycle * kSectorBytes;
   out.dram_bandwidth =
       p.dram.channels * p.dram.clock_mhz * 1e6 * p.dram.transfers_per_clock * p.dram.bus_bytes;
-  const double share = p.dram.refresh == "all_bank" ? p.dram.rfc / p.dram.refi
-                                                    : 0.0;  // banks in turn leave the bus to the others
+  // A bank that is refreshed alone leaves the bus to the others.
+  const double share = p.dram.refresh == "all_bank" ? p.dram.rfc / p.dram.refi : 0.0;
   out.dram_refreshed = out.dram_bandwidth * (1 - share);
   return out;
 }

@@ -1,4 +1,4 @@
-// Policy: which line of a set makes way for a new line.
+// Interface: chooses which line of a set makes way for a new line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace glint::mem {
 
-// A line of a cache. Each mask has one bit for each sector of 32 bytes.
+// Describes a line of a cache. Each mask has one bit for each sector of 32 bytes.
 struct CacheLine {
   Address address = 0;
   uint8_t valid = 0;  // sectors that are present
-  uint8_t dirty = 0;  // sectors that are newer than the level below, also sectors written only in part
-  bool held = false;  // the data of the line is on the way, so the line is never a victim
+  uint8_t dirty = 0;  // sectors that are newer than the level below, also those written only in part
+  bool held = false;  // whether data of the line are on the way, so that it is never a victim
   bool used() const { return valid || dirty || held; }
 };
 
@@ -35,14 +35,14 @@ class Replacement {
   static constexpr uint32_t kNone = ~0u;
 
   virtual ~Replacement() = default;
-  // The slot whose line makes way. `lines` holds all lines of the cache, by slot.
+  // Returns the slot whose line makes way. `lines` holds all lines of the cache, by slot.
   virtual uint32_t victim(uint32_t set, std::span<const CacheLine> lines) const = 0;
-  virtual void filled(uint32_t slot) = 0;   // the slot got a new line
-  virtual void touched(uint32_t slot) = 0;  // an access found its line in the slot
-  virtual void emptied(uint32_t) {}         // the line in the slot lost its last sector
+  virtual void filled(uint32_t slot) = 0;   // reports that the slot got a new line
+  virtual void touched(uint32_t slot) = 0;  // reports that an access found its line in the slot
+  virtual void emptied(uint32_t) {}         // reports that the line in the slot lost its last sector
 };
 
-// The first slot from `first` to `first + ways - 1` that holds no line, or kNone.
+// Returns the first slot from `first` to `first + ways - 1` that holds no line, or kNone.
 inline uint32_t first_unused(std::span<const CacheLine> lines, uint32_t first, uint32_t ways) {
   for (uint32_t slot = first; slot < first + ways; ++slot)
     if (!lines[slot].used()) return slot;

@@ -1,4 +1,4 @@
-// What a core asks of the memory system: one request for sectors of one line.
+// Declares what a core asks of the memory system: one request for sectors of one line.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -10,22 +10,23 @@
 
 namespace glint::mem {
 
-// What an access is for. Hits, misses and latencies are counted by it; memsys knows no more of an access.
+// Says what an access is for. Hits, misses and latencies are counted by it; memsys knows no more of an
+// access.
 enum class Traffic : uint8_t {
   ShaderGlobal,
   ShaderLocal,
   ShaderTexture,
   ShaderSurface,
   ShaderBinding,
-  ShaderAtomic,  // read-modify-write at the L2
+  ShaderAtomic,  // is a read-modify-write at the L2
   Instruction,
-  Constant,  // as instructions: lines for caches of the core, which the L1 does not keep
+  Constant,  // goes to a cache of the core, as an instruction does; the L1 does not keep the line
   RtNode,
   RtInstance,
   RtTriangle,
   RtProcedural,
-  RtTable,  // tables of candidates that wait for their shaders
-  RtStack,  // the stacks of rays
+  RtTable,  // is for tables of candidates that wait for their shaders
+  RtStack,  // is for the stacks of rays
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
@@ -40,15 +41,15 @@ constexpr bool is_rt(Traffic t) {
   return t >= Traffic::RtNode;
 }
 constexpr bool is_local(Traffic t) {
-  return t == Traffic::ShaderLocal || t == Traffic::RtStack;  // memory that belongs to one thread
+  return t == Traffic::ShaderLocal || t == Traffic::RtStack;  // this memory belongs to one thread
 }
 constexpr bool passes_l1(Traffic t) {
   return t == Traffic::Instruction || t == Traffic::Constant;
 }
 
-inline constexpr uint32_t kSectorBytes = 32;  // the unit of transfer between all levels (Volta and later)
+inline constexpr uint32_t kSectorBytes = 32;  // unit of transfer between all levels (Volta and later)
 
-using Token = uint32_t;  // the requester's name for a request, which comes back unchanged
+using Token = uint32_t;  // name that the requester gives a request, which comes back unchanged
 
 // Bit i stands for the i-th of 32 equal parts of a line; in a line of 128 bytes the parts are words of 4
 // bytes. Model: a part counts as written only when a store covers it whole.
@@ -60,20 +61,20 @@ constexpr WordMask words_of_sector(uint32_t sector, uint32_t line_bytes) {
   return (kAllWords >> (32 - words)) << (sector * words);
 }
 
-// What an atomic adds to a request. Lanes of a warp that meet in a word of a sector take turns, and each turn
-// moves the data of a whole sector.
+// Holds what an atomic adds to a request. Lanes of a warp that meet in a word of a sector take turns, and
+// each turn moves the data of a whole sector.
 struct AtomicLanes {
   uint8_t lanes = 0;
-  uint8_t turns = 0;  // of all its sectors together; 0 stands for one turn in each sector
+  uint8_t turns = 0;  // turns of all its sectors together; 0 stands for one turn in each sector
 };
 
 struct Request {
-  Address line = 0;     // physical, aligned to the L1 line size
-  uint8_t sectors = 0;  // bit i: sector i of the line is wanted or written
+  Address line = 0;     // physical address, aligned to the size of an L1 line
+  uint8_t sectors = 0;  // bit i says that sector i of the line is wanted or written
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
-  Token token = 0;             // of a read, comes back once when all sectors are there; writes have no answer
-  WordMask words = kAllWords;  // of a write: the words of the line that it covers
+  Token token = 0;             // comes back once when a read has all sectors; writes have no answer
+  WordMask words = kAllWords;  // words of the line that a write covers
   // An atomic (Traffic::ShaderAtomic) is a "read" whose token comes back when the L2 has changed the sectors,
   // or a "write" that has no answer.
   AtomicLanes atomic{};

@@ -1,4 +1,4 @@
-// A first-in first-out queue that allocates nothing once it has grown to its largest use.
+// Declares a first-in first-out queue that allocates nothing once it has grown to its largest use.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>

@@ -1,4 +1,4 @@
-// Where the time of a miss goes: its stages from the miss of an L1 to its fill, and the stamps between them.
+// Splits the time of a miss into stages, from the miss of an L1 to its fill, by the stamps between them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace glint::mem {
 
-// A read passes the stages in this order; each begins where the one before ends. The queues take no time when
-// nothing else is in flight.
+// A read passes the stages in this order. Each begins where the one before ends. The comment of a stage names
+// its end and, after a colon, what takes its time. The queues take no time when nothing else is in flight.
 enum class Stage : uint8_t {
   L1Queue,    // from acceptance by the L1 until the packet starts to leave: tags, miss queue, request port
   Request,    // until the whole packet has come to the slice
@@ -32,8 +32,8 @@ constexpr std::string_view name_of(Stage stage) {
   return kNames[size_t(stage)];
 }
 
-// The cycle in which each stage but the last ended, modulo 2^32: only differences are used, and no miss takes
-// that long.
+// Holds the cycle in which each stage but the last ended, modulo 2^32: only differences are used, and no miss
+// takes that long.
 struct Stamps {
   std::array<uint32_t, size_t(Stage::Count) - 1> end{};
   // Holds when the L1 accepted an atomic. Other reads wait in the L1, which knows their cycle.
@@ -46,7 +46,7 @@ struct Stamps {
 // Splits [accepted, filled) into stages; the parts add up exactly. A read that came when the data were
 // already on their way has no part in the stages that were over by then.
 inline void add_stages(stats::Breakdown<Stage>& to, Cycle accepted, Cycle filled, const Stamps& stamps) {
-  auto left = uint32_t(filled - accepted);  // what the stages from this one on share
+  auto left = uint32_t(filled - accepted);  // cycles that the stages from this one on share
   for (size_t i = 0; i < stamps.end.size(); ++i) {
     const uint32_t after = std::min(left, uint32_t(filled) - stamps.end[i]);
     to.add(Stage(i), left - after);

@@ -1,4 +1,4 @@
-// The statistics that L1 and L2 have in common; most of them are counted by traffic class.
+// Declares the statistics that L1 and L2 have in common. Most of them are counted by traffic class.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -13,7 +13,7 @@
 
 namespace glint::mem {
 
-// Why a cache refused a request.
+// Says why a cache refused a request.
 enum class Refusal : uint8_t { Port, Bank, MshrFull, MergeLimit, QueueFull, SetHeld, Count };
 constexpr std::string_view name_of(Refusal reason) {
   constexpr std::string_view kNames[] = {"port",        "bank",       "mshr_full",

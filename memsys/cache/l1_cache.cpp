@@ -1,4 +1,4 @@
-// What the L1 does with accesses, with packets that leave, and with fills.
+// Handles the accesses of the L1, the packets that leave it, and its fills.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/cache/l1_cache.h"
 
@@ -99,8 +99,8 @@ void L1Cache::hold(Cycle now, Address line, uint32_t slot) {
   (slot == kNone ? tags_.insert(line) : tags_.line(slot)).held = true;
 }
 
-// Writes through: sectors that are present stay valid, with the new bytes. With `write_allocate`, a line that
-// is absent is allocated with the sectors that the write covers.
+// Writes a request through to the L2. Sectors that are present stay valid, with the new bytes. With
+// `write_allocate`, a line that is absent is allocated with the sectors that the write covers.
 bool L1Cache::write_through(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   const uint8_t covered = params_.write_allocate ? covered_sectors(request, line_bytes_) : uint8_t{0};
@@ -154,8 +154,8 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   return true;
 }
 
-// Writes into the cache, to be written back later. Whole sectors are written, so nothing needs to be fetched
-// (write-validate).
+// Writes a request into the cache, which writes it back later. Whole sectors are written, so nothing needs to
+// be fetched (write-validate).
 bool L1Cache::write_back(Cycle now, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   if (slot == kNone) {
@@ -176,7 +176,7 @@ bool L1Cache::write_back(Cycle now, const Request& request) {
 }
 
 void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
-  // The write-back of a fill is ready at once, but may not overtake packets: the queue keeps its order.
+  // The write-back of a fill is ready at once, but it may not overtake packets: the queue keeps its order.
   miss_queue_.push({ready, packet});
   miss_queue_.back().packet.core = core_;
   miss_queue_.back().packet.slice = uint16_t(map_.slice(packet.line));

@@ -1,4 +1,5 @@
-// The L1 data cache of a core: sectored, streaming, write-through for global and write-back for local memory.
+// Models the sectored L1 data cache of a core. By default it streams, writes global memory through, and
+// writes local memory back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -57,7 +58,7 @@ struct L1Stats : CacheStats {
                                       "Sum of the latencies that `miss_latency` counts, by stage."};
 };
 
-// An event: the L1 has taken a read that counts as a miss.
+// Tells that the L1 has taken a read that counts as a miss.
 struct ReadMissed {
   Client client = Client::Lsu;
   const Request& request;
@@ -71,7 +72,7 @@ struct ReadMissed {
 // executed by the L2; the cache drops their sectors. Model: a write covers whole sectors, and a write to a
 // line on its way does not disturb the line. Model: a read that waits for a sector on its way is ready when
 // the sector is, even within the hit latency. Model: local memory that is dirty at the end of a run is not
-// written back, because its thread is gone.
+// written back, because its thread has ended.
 class L1Cache final : public L1Port {
  public:
   L1Cache(const Params& params, uint16_t core, const PartitionMap& map, CorePort port, stats::Group* parent);
@@ -87,7 +88,8 @@ class L1Cache final : public L1Port {
   Probe<ReadMissed>& read_missed() { return read_missed_; }
   // Returns the latencies of all reads, from acceptance until the token can be popped.
   const Latencies& latencies() const { return latencies_; }
-  // Whether the cache holds no miss and no packet, and has given back the token of every accepted read.
+  // Returns whether the cache holds no miss and no packet, and has given back the token of every accepted
+  // read.
   bool drained() const;
   uint64_t packets_sent() const { return packets_sent_; }
   uint64_t sectors_requested() const { return sectors_requested_; }
@@ -107,14 +109,15 @@ class L1Cache final : public L1Port {
   };
   struct Completion {
     Cycle ready = 0;
-    uint64_t order = 0;  // of acceptance
+    uint64_t order = 0;  // number in the order of acceptance
     Token token = 0;
   };
   struct Outgoing {
     Cycle ready = 0;
     Packet packet;
   };
-  struct Answers {  // the completed reads of one client; each ring is in order of readiness
+  // Holds the completed reads of one client; each ring is in the order in which they are ready.
+  struct Answers {
     Ring<Completion> hits, fills;
   };
 
@@ -150,18 +153,18 @@ class L1Cache final : public L1Port {
   Latencies latencies_;
   TagArray tags_;
   Mshr<Waiter> mshr_;
-  // Tells for each MSHR whether the cache does not keep the line (instructions, constants).
+  // Tells for each MSHR whether its line passes the cache and is not kept (instructions, constants).
   std::vector<uint8_t> passing_;
   LineTable seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;
-  Cycle port_cycle_ = kNever;  // the cycle that accesses_ and busy_banks_ belong to
+  Cycle port_cycle_ = kNever;  // cycle to which accesses_ and busy_banks_ belong
   uint32_t accesses_ = 0;
   uint64_t busy_banks_ = 0;
-  Cycle filled_cycle_ = kNever;  // the cycle of the last fill, and its bank
+  Cycle filled_cycle_ = kNever;  // cycle of the last fill; filled_bank_ is its bank
   uint64_t filled_bank_ = 0;
-  Cycle fill_not_before_ = 0;  // the earliest cycle of the next fill: there is one a cycle
-  // Says that a dirty victim found the miss queue full, so that fills wait until a packet leaves.
+  Cycle fill_not_before_ = 0;  // earliest cycle of the next fill: there is one per cycle
+  // Says whether a dirty victim found the miss queue full. Fills then wait until a packet leaves.
   bool fill_blocked_ = false;
   uint64_t order_ = 0;
   uint64_t packets_sent_ = 0, sectors_requested_ = 0, sectors_received_ = 0, reads_accepted_ = 0,

@@ -1,4 +1,4 @@
-// The events of an L2 slice: packets that come, tags, requests to DRAM and their data, replies that leave.
+// Handles the events of an L2 slice: packets that come, requests to DRAM and their data, replies that leave.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/cache/l2_slice.h"
 
@@ -122,7 +122,7 @@ Cycle L2Slice::service_parts(const Packet& packet) const {
 }
 
 // Keeps the slice busy with a packet. Writes may take parts of cycles: a packet that waited for the one
-// before begins in the part in which that one ended.
+// before begins in the part in which that packet ended.
 void L2Slice::occupy(Cycle now, const Packet& packet) {
   const bool is_write = packet.write && !is_atomic(packet);
   const Cycle parts = is_write && visit_parts_ + partial_parts_ ? write_parts(packet) : service_parts(packet);
@@ -130,7 +130,7 @@ void L2Slice::occupy(Cycle now, const Packet& packet) {
   busy_until_ = (busy_parts_ + kParts - 1) / kParts;
 }
 
-// Returns the time of a write, with the time of its own for sectors that are written in part.
+// Returns the time of a write. A sector that is written in part has a time of its own.
 Cycle L2Slice::write_parts(const Packet& packet) const {
   const uint8_t covered = covered_sectors(packet, line_bytes_);
   if (visit_parts_ == 0)
@@ -140,7 +140,7 @@ Cycle L2Slice::write_parts(const Packet& packet) const {
          num_sectors(part) * partial_parts_;
 }
 
-// Serves a read, or an atomic, which needs the sectors that it changes.
+// Serves a read or an atomic. An atomic needs the sectors that it changes, as a read does.
 bool L2Slice::read(Cycle now, const Packet& packet) {
   const uint32_t slot = tags_.find(packet.line);
   const uint8_t missing = slot == kNone ? packet.sectors : uint8_t(packet.sectors & ~tags_.line(slot).valid);
@@ -210,7 +210,7 @@ uint8_t L2Slice::whole_sectors(const Packet& packet, uint32_t slot, uint8_t vali
     if (!(packet.sectors & bit)) continue;
     const WordMask whole = words_of_sector(i, line_bytes_);
     if (!(tags_.line(slot).dirty & bit))
-      words_[slot] &= ~whole;  // what is there belongs to a line that was here before, or to old data
+      words_[slot] &= ~whole;  // these bits are of an earlier line in the slot, or of old data
     words_[slot] |= packet.words & whole;
     if ((valid & bit) || (words_[slot] & whole) == whole)
       out |= bit;
@@ -261,7 +261,7 @@ SliceCycle L2Slice::reason(bool dram_works) const {
   return SliceCycle::Idle;
 }
 
-// Attributes the cycles [accounted_, until), which lie after the last event and before the next.
+// Counts the cycles [accounted_, until), which lie after the last event and before the next, by reason.
 void L2Slice::account(Cycle until, bool dram_works) {
   if (until <= accounted_) return;
   const Cycle serving = std::clamp(busy_until_, accounted_, until) - accounted_;

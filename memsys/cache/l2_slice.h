@@ -1,4 +1,4 @@
-// A slice of the L2: a cache with a port of the network, in front of its partition's DRAM channel.
+// Models a slice of the L2: a cache with a port of the network, in front of its partition's DRAM channel.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace glint::mem {
 
-// What a cycle of a slice went into; each cycle has exactly one reason.
+// Says what a cycle of a slice went into. Each cycle has exactly one reason.
 enum class SliceCycle : uint8_t { Service, MshrFull, MergeLimit, QueueFull, DramWait, Pipeline, Idle, Count };
 constexpr std::string_view name_of(SliceCycle cycle) {
   constexpr std::string_view kNames[] = {"service",   "mshr_full", "merge_limit", "queue_full",
@@ -51,7 +51,7 @@ struct L2Stats : CacheStats {
                                    "Number of sectors written in part whose other bytes came from DRAM."};
 };
 
-// A request on its way from a slice to the DRAM scheduler.
+// Describes a request on its way from a slice to the DRAM scheduler.
 struct ToDram {
   Cycle ready = 0;
   Address line = 0;
@@ -59,24 +59,26 @@ struct ToDram {
   bool write = false;
 };
 
-// Packets are served in order of arrival, with `sectors_per_cycle` sectors of data a cycle. The oldest packet
-// waits while no MSHR, no merge or no entry of the queue to DRAM is free, and all packets behind it wait too.
-// Sectors that a write covers are valid at once. Of a sector that is written in part, the slice keeps the
-// words that were written until eviction, and fetches the sector when it is read. One reply has all sectors
-// that were found; sectors from DRAM are answered one by one as they arrive. Model: a fill always finds an
-// entry in the queue to DRAM for the write-back of its victim. Model: a sector that is written in part takes
-// as long in DRAM as a whole one (data mask, no read-modify-write). Model: dirty sectors left at the end of a
-// run are not written back.
+// Packets are served in order of arrival, with `sectors_per_cycle` sectors of data per cycle. The oldest
+// packet waits while it needs an MSHR, a merge or an entry of the queue to DRAM and none is free. All packets
+// behind it wait, too. Sectors that a write covers are valid at once. Of a sector that is written in part,
+// the slice keeps the words that were written until eviction, and fetches the sector when it is read. One
+// reply has all sectors that were found. Sectors from DRAM are answered as they arrive. Model: a fill always
+// finds an entry in the queue to DRAM for the write-back of its victim. Model: a sector that is written in
+// part takes as long in DRAM as a whole one (data mask, no read-modify-write). Model: dirty sectors left at
+// the end of a run are not written back.
 class L2Slice {
  public:
   L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SlicePort port, stats::Group* parent,
           const std::string& name);
 
-  // The partition calls these in each cycle, in this order, the last stage first.
+  // The partition calls fill(), send_ready_replies() and serve() in this order in each cycle in which it has
+  // work: the last stage comes first.
   void fill(Cycle now, const DramReturn& data);
   void send_ready_replies(Cycle now);
   void serve(Cycle now);
-  Cycle next_work() const;  // of replies and packets; the partition knows when DRAM has work
+  // Returns the next cycle with a reply or a packet to handle. The partition knows when DRAM has work.
+  Cycle next_work() const;
   void account(Cycle until, bool dram_works);
 
   Ring<ToDram>& to_dram() { return to_dram_; }
@@ -89,9 +91,8 @@ class L2Slice {
   uint64_t sectors_replied() const { return sectors_replied_; }
   uint64_t progress() const { return packets_received_ + replies_sent_; }
   bool finished() const;
-  Cycle written_until() const {
-    return written_until_;
-  }  // the end of the last write or atomic without answer
+  // Returns the end of the last write or atomic that has no answer.
+  Cycle written_until() const { return written_until_; }
   std::string describe(bool dram_works) const;
 
  private:
@@ -124,7 +125,7 @@ class L2Slice {
   bool dram_room(uint32_t requests) const { return to_dram_.size() + requests <= params_.dram_queue; }
   SliceCycle reason(bool dram_works) const;
 
-  static constexpr Cycle kParts = 16;  // parts of a cycle
+  static constexpr Cycle kParts = 16;  // number of parts of a cycle
 
   const L2Params params_;
   const Cycle visit_parts_, partial_parts_, lane_parts_;
@@ -135,13 +136,13 @@ class L2Slice {
   SlicePort port_;
   L2Stats stats_;
   TagArray tags_;
-  std::vector<WordMask> words_;  // by slot: the words written in sectors that are dirty and not valid
+  std::vector<WordMask> words_;  // words written in sectors that are dirty and not valid, by slot
   Mshr<Waiter> mshr_;
   LineTable seen_;
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
   Cycle busy_until_ = 0;
-  Cycle busy_parts_ = 0;  // the same in parts of a cycle
+  Cycle busy_parts_ = 0;  // busy_until_ in parts of a cycle, before it was rounded up
   Cycle written_until_ = 0;
   Cycle accounted_ = 0;
   SliceCycle blocked_ = SliceCycle::Count;  // why the oldest packet was refused; Count: it was not tried

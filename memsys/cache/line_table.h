@@ -1,4 +1,4 @@
-// An open-addressed map from a line address to a small number, for tags, MSHRs and sets of lines.
+// Maps a line address to a small number by open addressing, for tags, MSHRs and sets of lines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -11,9 +11,9 @@
 
 namespace glint::mem {
 
-// The table probes linearly, is at most half full, and deletes by shifting cells back; there are no
-// tombstones, so lookups never slow down. It doubles when it holds more lines than ever before, and allocates
-// only then.
+// The table probes linearly, is at most half full, and deletes by shifting cells back. There are no
+// tombstones, so lookups never slow down. The table doubles when it holds more lines than ever
+// before, and allocates only then.
 class LineTable {
  public:
   static constexpr uint32_t kNone = ~0u;
@@ -26,13 +26,13 @@ class LineTable {
       if (cells_[i].line == kEmpty) return kNone;
     }
   }
-  // `line` must be absent.
+  // Inserts `line`, which must be absent.
   void insert(Address line, uint32_t value) {
     if (2 * (size_ + 1) > cells_.size()) grow();
     put({line, value});
     ++size_;
   }
-  // `line` must be present.
+  // Removes `line`, which must be present.
   void erase(Address line) {
     size_t hole = home(line);
     while (cells_[hole].line != line) hole = (hole + 1) & mask_;
@@ -43,7 +43,7 @@ class LineTable {
     cells_[hole].line = kEmpty;
     --size_;
   }
-  // Returns whether `line` was absent; the table then has it.
+  // Inserts `line` if it is absent. Returns whether it was absent.
   bool insert_if_new(Address line) {
     if (find(line) != kNone) return false;
     insert(line, 0);
@@ -58,7 +58,8 @@ class LineTable {
     uint32_t value;
   };
 
-  // Fibonacci hashing takes the upper bits of a product with 2^64 / golden ratio (Knuth, TAOCP 3, 6.4).
+  // Returns the cell at which the search for `line` begins. Fibonacci hashing takes the upper bits of a
+  // product with 2^64 / golden ratio (Knuth, TAOCP 3, 6.4).
   size_t home(Address line) const { return size_t((line * 0x9e37'79b9'7f4a'7c15ull) >> shift_); }
   void put(Cell cell) {
     size_t i = home(cell.line);

@@ -1,4 +1,5 @@
-// Miss status holding registers: the lines that are being fetched, and who waits for which of their sectors.
+// Models miss status holding registers (MSHRs). They know which lines are being fetched, and who waits for
+// which of their sectors.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -10,9 +11,9 @@
 
 namespace glint::mem {
 
-// There is a fixed number of entries, each with a fixed number of waiters. `Waiter` is a plain struct.
-// Model: an entry covers a line and knows which of its sectors are on the way, where GPGPU-Sim gives each
-// 32-byte sector an entry of its own.
+// There is a fixed number of entries, each of which holds up to a fixed number of waiters. `Waiter` is a
+// plain struct. Model: an entry covers a line and knows which of its sectors are on the way, where GPGPU-Sim
+// gives each 32-byte sector an entry of its own.
 template <class Waiter>
 class Mshr {
  public:
@@ -50,7 +51,7 @@ class Mshr {
     e.last = id;
     ++e.count;
   }
-  // Notes that `sectors` arrived and visits the waiters, oldest first; `visit` returns true for a waiter that
+  // Notes that `sectors` arrived and visits the waiters, oldest first. `visit` returns true for a waiter that
   // is served. The entry is free again when no sector is on the way; every waiter must be served by then.
   template <class Visit>
   void arrive(uint32_t entry, uint8_t sectors, Visit&& visit) {
@@ -81,8 +82,8 @@ class Mshr {
   struct Entry {
     Address line = 0;
     uint8_t pending = 0;                   // sectors on the way
-    uint32_t count = 0;                    // waiters
-    uint32_t first = kNone, last = kNone;  // waiters; `first` also links free entries
+    uint32_t count = 0;                    // number of waiters
+    uint32_t first = kNone, last = kNone;  // first and last waiter; `first` also links free entries
   };
   struct Link {
     Waiter waiter{};

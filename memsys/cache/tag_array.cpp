@@ -1,4 +1,4 @@
-// Construction of a tag array from its shape and the policy that replaces its lines.
+// Builds a tag array from its shape and the policy that replaces its lines.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/cache/tag_array.h"
 

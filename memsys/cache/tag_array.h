@@ -1,4 +1,4 @@
-// The tags of a sectored cache, set-associative or fully associative.
+// Models the tags of a sectored cache, which is set-associative or fully associative.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace glint::mem {
 struct CacheShape {
   uint32_t sets = 1, ways = 1, line_bytes = 128;
 };
-// The shape of a cache of `bytes`. With 0 ways it is fully associative: one set that has all lines.
+// Returns the shape of a cache of `bytes`. With 0 ways it is fully associative: one set has all lines.
 CacheShape cache_shape(uint64_t bytes, uint32_t ways, uint32_t line_bytes);
 
 // One hash table finds a line in any organisation, and a policy chooses which line makes way. Each sector is
@@ -37,13 +37,13 @@ class TagArray {
 
   uint32_t slot_of(const Line& line) const { return uint32_t(&line - lines_.data()); }
 
-  // Returns the line that insert(address) would replace. Where lines may be held, has_victim() says whether
-  // there is one.
+  // Returns the line that insert(address) would replace. There may be none where lines are held; has_victim()
+  // says whether there is one.
   const Line& victim(Address address) const { return lines_[victim_of(address)]; }
   bool has_victim(Address address) const { return victim_of(address) != kNone; }
 
-  // Replaces the victim by `address`, which was absent until now. The line has no valid sectors: the caller
-  // sets at least one.
+  // Replaces the victim by the line at `address`, which must be absent. The new line has no valid sectors;
+  // the caller sets at least one.
   Line& insert(Address address) {
     const uint32_t slot = victim_of(address);
     Line& line = lines_[slot];
@@ -75,7 +75,8 @@ class TagArray {
 
  private:
   uint32_t victim_of(Address address) const { return replacement_->victim(set_of(address), lines_); }
-  // Model: a multiplicative hash spreads power-of-two strides over the sets; real hashes are not published.
+  // Returns the set of a line. Model: a multiplicative hash spreads power-of-two strides over the sets; real
+  // hashes are not published.
   uint32_t set_of(Address address) const {
     if (shape_.sets == 1) return 0;
     const uint64_t hash = (address / shape_.line_bytes) * 0x9e37'79b9'7f4a'7c15ull;

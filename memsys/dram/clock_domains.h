@@ -1,4 +1,4 @@
-// The exact relation between core cycles and DRAM command clocks.
+// Relates core cycles to DRAM command clocks exactly.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
@@ -9,12 +9,14 @@
 
 namespace glint::mem {
 
-// A number of command clocks since launch. The compiler takes it for a Cycle: the two are never mixed.
+// Counts command clocks since the launch. The compiler cannot tell it from a Cycle; the code never mixes the
+// two.
 using DramClock = uint64_t;
 
 // Both clocks start together at 0 and have a common tick. With clocks in whole kHz, a core cycle has
-// dram_khz/g ticks and a command clock has core_khz/g ticks, where g is the greatest common divisor. All are
-// integers, so nothing drifts. Products stay below 2^64 for 2^40 cycles and clocks up to 16 GHz.
+// dram_khz/g ticks and a command clock has core_khz/g ticks, where g is the greatest common divisor. All
+// these numbers are integers, so nothing drifts. Products stay below 2^64 for 2^40 cycles and clocks up to 16
+// GHz.
 class ClockDomains {
  public:
   ClockDomains(double core_mhz, double dram_mhz) {

@@ -1,4 +1,5 @@
-// How a DRAM channel issues each command in the first clock that its timing allows, and what that forbids.
+// Issues each command of a DRAM channel in the first clock that its timing allows, and notes what the command
+// forbids.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/dram/dram_channel.h"
 
@@ -56,14 +57,14 @@ void DramChannel::step(DramClock now) {
     const Plan plan = plan_;
     if (plan.column != kNone) issue_column(plan.column, now);
     if (plan.row != kNone && (plan.column == kNone || dual_command_bus_)) issue_row(plan.row, now);
-    if (plan.column != kNone) pick_all();  // its bank is free for another request
+    if (plan.column != kNone) pick_all();  // the bank is free for another request
     plan_from(now + 1);
   }
   // A channel without requests catches up on refreshes in its next step, because nothing can see them.
   next_step_ = busy_banks_ ? std::min(plan_.at, refresh_due_) : plan_.at;
 }
 
-// Gives requests to free banks; returns whether any bank got one. Only a free bank or a new request changes
+// Gives requests to free banks. Returns whether any bank got one. Only a free bank or a new request changes
 // the answers of pick().
 bool DramChannel::pick_all() {
   bool any = false;
@@ -187,8 +188,8 @@ void DramChannel::issue_row(uint32_t index, DramClock now) {
   ++stats_.activates;
 }
 
-// Attributes the clocks [accounted_, until). After the first of them no command goes out, no bank takes or
-// ends a request and no refresh falls due.
+// Counts the clocks [accounted_, until) by reason. After the first of them no command goes out, no bank takes
+// or ends a request and no refresh falls due.
 void DramChannel::account(DramClock until) {
   if (until <= accounted_) return;
   const DramClock length = until - accounted_;
@@ -207,7 +208,7 @@ void DramChannel::account(DramClock until) {
   accounted_ = until;
 }
 
-// Attributes the clocks [from, until), in which some bank has a request and the bus carries no data.
+// Counts the clocks [from, until), in which some bank has a request and the bus carries no data, by reason.
 void DramChannel::account_waiting(DramClock from, DramClock until) {
   if (from == until) return;
   DramClock turned = kNever, refreshed = kNever;
@@ -233,7 +234,7 @@ DramClock DramChannel::turned_at(uint32_t index) const {
   return std::max(turned_[0], group_turned_[bank_group_[index]]);
 }
 
-// Does the refreshes that have fallen due; returns whether there was one.
+// Does the refreshes that have fallen due. Returns whether there was one.
 bool DramChannel::refresh_up_to(DramClock now) {
   if (refresh_due_ > now) return false;
   for (; refresh_due_ <= now; refresh_due_ += timing_.refresh_interval) {
@@ -261,7 +262,8 @@ void DramChannel::refresh(DramClock due) {
   for (Bank& bank : banks_) refresh_bank(bank, start + timing_.refresh_time);
 }
 
-// Returns when the bank can be refreshed, from `due` on: its row is closed, and it could be opened as well.
+// Returns the first clock, from `due` on, in which the bank can be refreshed: its row is closed, and a row
+// could be opened as well.
 DramClock DramChannel::closed_at(const Bank& bank, DramClock due) const {
   const DramClock closed = bank.row == kClosed ? due : std::max(due, bank.gates.at[Precharge]) + timing_.rp;
   return std::max(closed, bank.gates.at[Activate]);

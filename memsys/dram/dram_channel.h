@@ -1,4 +1,4 @@
-// A DRAM channel with its banks, their row buffers, the timing of commands, and the data bus.
+// Models a DRAM channel with its banks, their row buffers, the timing of commands, and the data bus.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -14,11 +14,12 @@
 namespace glint::mem {
 
 // Every bank works on one request at a time, which it takes from the scheduler. Each command clock carries at
-// most one command, or one row and one column command. A command goes out in the first clock that all its
-// constraints allow; clocks in which none can go are skipped. Column commands go before row commands, and
-// older requests before younger ones. When a refresh is due, its banks finish what they have begun, close
-// their rows and take no command until the refresh is over. Model: rows stay open until then; a refresh is
-// never early, late or left out, its commands take no clock of the command bus, and there is no temperature.
+// most one command, or one row and one column command where the command bus is dual. A command goes out in
+// the first clock that all its constraints allow; clocks in which none can go are skipped. Column commands go
+// before row commands, and older requests before younger ones. When a refresh is due, its banks finish what
+// they have begun, close their rows and take no command until the refresh is over. Model: rows stay open
+// until then; a refresh is never early, late or left out, its commands take no clock of the command bus, and
+// there is no temperature.
 class DramChannel : public DramModel {
  public:
   explicit DramChannel(const Context& context);
@@ -39,21 +40,23 @@ class DramChannel : public DramModel {
     uint8_t sectors = 0;
   };
   enum Command : uint8_t { Activate, Precharge, Read, Write, NumCommands };
-  // The earliest clock of each command, as far as one bank, one group or the channel is concerned.
+  // Holds the earliest clock of each command, as far as one bank, one group or the channel is concerned.
   struct Gates {
     DramClock at[NumCommands] = {};
     void raise(Command command, DramClock to) { at[command] = std::max(at[command], to); }
   };
   struct Bank {
     uint32_t row = kClosed;
-    uint32_t current = kNone;  // the slot that it works on
-    uint32_t queued = 0;       // its requests in the scheduler
-    Command next = Activate;   // its next command for the current request
+    uint32_t current = kNone;  // slot of the request that the bank works on
+    uint32_t queued = 0;       // number of its requests in the scheduler
+    Command next = Activate;   // next command for the current request
     uint64_t age = 0;          // age of the current request
     DramClock refresh_until = 0;
     Gates gates;
   };
-  struct Plan {  // the next clock at which commands can go out, and the oldest ready bank of each kind then
+  // Holds the next clock at which commands can go out. For each kind of command it names the ready bank whose
+  // request is the oldest.
+  struct Plan {
     DramClock at = kNever;
     uint32_t column = kNone, row = kNone;
   };
@@ -84,20 +87,20 @@ class DramChannel : public DramModel {
   std::vector<uint8_t> bank_group_;  // by bank
   std::vector<Gates> group_gates_;
   Gates channel_gates_;
-  // When the data bus may carry a Read or a Write again, as far as its direction is concerned. The gates
-  // above contain these clocks.
-  std::vector<DramClock> group_turned_;  // to reading, by group
-  DramClock turned_[2] = {};             // to reading, to writing
-  DramClock last_activates_[4] = {};     // a ring; tFAW allows no fifth activate inside its window
+  // group_turned_ and turned_ say when a Read or a Write may go out again, as far as the direction of the
+  // data bus is concerned. The gates above contain these clocks.
+  std::vector<DramClock> group_turned_;  // clock from which a Read may go out, by group
+  DramClock turned_[2] = {};             // clocks from which a Read and a Write may go out
+  DramClock last_activates_[4] = {};     // is a ring; tFAW allows no fifth activate inside its window
   uint64_t num_activates_ = 0;
-  uint64_t busy_banks_ = 0;     // one bit for each bank that works on a request
-  uint64_t waiting_banks_ = 0;  // one bit for each bank that has requests in the scheduler
+  uint64_t busy_banks_ = 0;     // has one bit for each bank that works on a request
+  uint64_t waiting_banks_ = 0;  // has one bit for each bank that has requests in the scheduler
   uint64_t next_age_ = 0;
   DramClock refresh_due_ = kNever;
-  uint32_t refresh_next_ = 0;  // the bank whose turn is next, when banks are refreshed one by one
+  uint32_t refresh_next_ = 0;  // number of the next bank, when banks are refreshed one by one
   Plan plan_;
-  DramClock accounted_ = 0;     // clocks before this have been attributed
-  DramClock data_until_ = 0;    // clocks before this carry data
+  DramClock accounted_ = 0;     // clocks before this one have been counted by reason
+  DramClock data_until_ = 0;    // clocks before this one carry data
   DramClock timers_until_ = 0;  // the timer of some bank runs until this clock
   bool last_was_write_ = false;
 };

@@ -1,4 +1,4 @@
-// Named kinds of DRAM: what their data sheets say of one channel.
+// Lists the named kinds of DRAM, with what their data sheets say of one channel.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
@@ -35,8 +35,8 @@ void set_array(DramParams& p, uint32_t row_bytes, bool dual_command_bus, uint32_
 // All times are from Ramulator 2.1's presets, with clocks turned into nanoseconds. Their order is
 // rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l.
 
-// GDDR6-14000 at 1.35 V has a tCK of 0.57 ns. Refresh: 3333 clocks apart, 211 for all banks, 106 for one
-// bank.
+// GDDR6-14000 at 1.35 V has a tCK of 0.57 ns. Refreshes are 3333 clocks apart and take 211 clocks for all
+// banks or 106 for one bank.
 void gddr6_14000(DramParams& p) {
   set_bus(p, 1750.0, 8, 16, 2);
   set_array(p, 2048, false, 1);
@@ -44,7 +44,7 @@ void gddr6_14000(DramParams& p) {
             {15.4, 9.2, 15.4, 30.2, 45.0, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 4.56, 4.56, 16.5, 5.13, 6.27});
   set_refresh(p, 1900.0, 120.3, 60.4);
 }
-// This kind has half the transfers a clock: Vulkan-Sim's mobile part has 7 GT/s on a command clock of 1750
+// This kind has half the transfers per clock: Vulkan-Sim's mobile part has 7 GT/s on a command clock of 1750
 // MHz.
 void gddr6_7000(DramParams& p) {
   gddr6_14000(p);
@@ -55,8 +55,8 @@ void gddr6_14000_1v25(DramParams& p) {
   set_times(p,
             {17.1, 11.4, 17.1, 34.2, 51.3, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 6.27, 6.27, 24.5, 5.13, 6.27});
 }
-// LPDDR5-6400 has a tCK of 1.25 ns and 16-bit channels; an activate is two commands (ACT-1, ACT-2). Refresh
-// of 16 Gb dies: 3125 clocks apart, 224 for all banks, 112 for one bank.
+// LPDDR5-6400 has a tCK of 1.25 ns and 16-bit channels. An activate is two commands (ACT-1, ACT-2). Refreshes
+// of 16 Gb dies are 3125 clocks apart and take 224 clocks for all banks or 112 for one bank.
 void lpddr5_6400(DramParams& p) {
   set_bus(p, 800.0, 8, 16, 2);
   set_array(p, 2048, false, 2);
@@ -64,8 +64,8 @@ void lpddr5_6400(DramParams& p) {
       p, {18.75, 18.75, 18.75, 42.5, 61.25, 21.25, 11.25, 35.0, 10.0, 2.5, 5.0, 5.0, 5.0, 20.0, 6.25, 12.5});
   set_refresh(p, 3906.25, 280.0, 140.0);
 }
-// A pseudo-channel of HBM3-6400 has a tCK of 0.625 ns; an activate takes 1.5 clocks of the row command bus.
-// Refresh: 6240 clocks apart, 416 for all banks (8 Gb a channel), 320 for one bank.
+// A pseudo-channel of HBM3-6400 has a tCK of 0.625 ns. An activate takes 1.5 clocks of the row command bus.
+// Refreshes are 6240 clocks apart and take 416 clocks for all banks (8 Gb per channel) or 320 for one bank.
 void hbm3_6400(DramParams& p) {
   set_bus(p, 1600.0, 4, 8, 4);
   set_array(p, 1024, true, 2);

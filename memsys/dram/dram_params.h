@@ -1,4 +1,5 @@
-// Parameters of a memory channel: geometry, clocks and times in nanoseconds, and the named sets of them.
+// Declares the parameters of a memory channel (geometry, clocks, and times in nanoseconds) and named sets of
+// them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -14,9 +15,9 @@
 
 namespace glint::mem {
 
-std::vector<std::string> dram_kinds();  // the names, in the order of their table
+std::vector<std::string> dram_kinds();  // returns the names, in the order of their table
 std::string_view dram_kind_doc(std::string_view name);
-// Sets all that a data sheet says of one channel.
+// Sets every parameter that a data sheet gives for one channel.
 void apply_dram_kind(DramParams& params, std::string_view name);
 std::vector<std::string> refresh_modes();
 
@@ -39,11 +40,12 @@ struct DramParams {
   uint32_t banks = 16;
   uint32_t row_bytes = 2048;
   uint32_t bus_bytes = 2;
-  double clock_mhz = 1750.0;         // GDDR6 command clock, tCK 570 ps (Ramulator 2.1 GDDR6-14000)
-  uint32_t transfers_per_clock = 4;  // 7 GT/s on 2 bytes: 14 GB/s a channel, 56 GB/s on 4 (Vulkan-Sim MOBILE)
-  uint32_t burst = 16;               // GDDR6: 16n prefetch, 32 B an access
-  uint32_t queue = 64;               // Vulkan-Sim: frfcfs_dram_sched_queue_size
-  uint32_t latency = 100;            // Vulkan-Sim: dram_latency, core cycles
+  double clock_mhz = 1750.0;  // GDDR6 command clock, tCK 570 ps (Ramulator 2.1 GDDR6-14000)
+  // 7 GT/s on 2 bytes give 14 GB/s per channel, and 56 GB/s on 4 channels (Vulkan-Sim MOBILE).
+  uint32_t transfers_per_clock = 4;
+  uint32_t burst = 16;     // GDDR6 has 16n prefetch, which is 32 bytes per access
+  uint32_t queue = 64;     // Vulkan-Sim: frfcfs_dram_sched_queue_size
+  uint32_t latency = 100;  // Vulkan-Sim: dram_latency, in core cycles
   bool dual_command_bus = false;
   uint32_t activate_clocks = 1;
   uint32_t bus_turn = 2;  // GPGPU-Sim: tRTW = CL + BL + 2 - WL
@@ -129,7 +131,7 @@ struct DramParams {
               "Time from a refresh of one bank to an activate of that bank (tRFCpb).", 0.0, 1e5)};
   }
   static constexpr auto params() { return std::tuple_cat(channel_params(), time_params()); }
-  uint32_t atom_bytes() const { return bus_bytes * burst; }  // the data of one column command
+  uint32_t atom_bytes() const { return bus_bytes * burst; }  // returns the bytes of one column command
 };
 
 inline DramModel::DramModel(const Context& context, DramClock data_clocks)

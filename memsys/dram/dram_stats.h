@@ -1,4 +1,4 @@
-// The statistics of a DRAM channel: commands, queueing, and what each of its clocks went into.
+// Declares the statistics of a DRAM channel: commands, queueing, and what each of its clocks went into.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace glint::mem {
 
-// What a command clock went into; each clock has exactly one reason, the first that applies. GPGPU-Sim's
-// split of the bandwidth counts `turnaround` as `column_wait` and has no refresh.
+// Says what a command clock went into. Each clock has exactly one reason, which is the first that applies.
+// GPGPU-Sim's split of the bandwidth counts `turnaround` as `column_wait` and has no refresh.
 enum class DramUse : uint8_t {
   Data,        // the data bus was in use
   Turnaround,  // every bank with its row open waits for the bus to turn between reading and writing
   ColumnWait,  // a bank has its row open, and its column command waits for its activate or for other columns
   Refresh,     // every bank with a request is in refresh, or waits for it
-  RowWait,     // banks have requests, and none its row open
+  RowWait,     // banks have requests, and none of them has its row open
   Idle,
   Count
 };
@@ -69,8 +69,8 @@ struct DramStats {
   stats::Histogram queue_latency{&group, "queue_latency", "clock", stats::linear(0, 1024, 16),
                                  "Clocks from the queue to the column command of a request."};
   stats::Counter requests{&group, "requests", "request", "Number of requests taken into the queue."};
-  // These have the definitions of GPGPU-Sim (dram.cc, dram_sched.cc), so that numbers can be compared:
-  // bw_util, dram_eff, row buffer locality as the scheduler picks, and bank-level parallelism.
+  // These four have GPGPU-Sim's definitions (dram.cc, dram_sched.cc), so that numbers can be compared with
+  // its bw_util, dram_eff, row buffer locality as the scheduler picks, and bank-level parallelism.
   stats::Ratio utilisation{&group,      "utilisation", "ratio",
                            busy_clocks, clocks,        "Share of all clocks that carried data."};
   stats::Ratio efficiency{&group,      "efficiency",  "ratio",

@@ -1,4 +1,4 @@
-// The times of a DRAM channel in command clocks.
+// Holds the times of a DRAM channel in command clocks.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace glint::mem {
 
 struct DramTiming {
   DramClock rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l;
-  DramClock data;      // data-bus clocks of one request: a sector, or an atom where that is larger
-  DramClock rtw;       // from read command to write command: the bus turns around between their data
+  DramClock data;      // clocks of the data bus for one request: a sector, or an atom where that is larger
+  DramClock rtw;       // clocks from a read command to a write command: the bus turns between their data
   DramClock activate;  // clocks of the command bus that an activate takes
-  DramClock refresh_interval = kNever;  // from one refresh command to the next; kNever: there is no refresh
-  DramClock refresh_time = 0;           // from a refresh command until its banks can open rows again
+  DramClock refresh_interval = kNever;  // clocks from one refresh to the next; kNever: there is no refresh
+  DramClock refresh_time = 0;           // clocks from a refresh until its banks can open rows again
   bool refresh_per_bank = false;
 
   explicit DramTiming(const DramParams& p) {

@@ -1,4 +1,5 @@
-// DRAM model `banked`: a channel of banks with row buffers and refresh, command by command.
+// Implements the DRAM model `banked`: it simulates the banks of a channel, with row buffers and refresh,
+// command by command.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,5 @@
-// DRAM model `simple`: one latency and one bandwidth, in order of arrival, without banks, rows or refresh.
+// Implements the DRAM model `simple`: requests are served in order of arrival with one latency and one
+// bandwidth, without banks, rows or refresh.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,8 @@ namespace glint::mem {
 namespace {
 
 // Requests follow each other on the data bus, one every data_clocks / efficiency clocks. The data of a read
-// have come `latency` and its own transfer after its turn begins. Model: an entry of the queue is free when
-// the transfer begins, as an entry of `banked` is when the column command goes out.
+// have come when `latency` and its own transfer have passed since its turn began. Model: an entry of the
+// queue is free when the transfer begins, as an entry of `banked` is when the column command goes out.
 class Simple final : public DramModel {
  public:
   static constexpr const char* kName = "simple";
@@ -20,8 +21,8 @@ class Simple final : public DramModel {
       "Requests are served in the order of arrival, with a fixed latency and a share of the peak bandwidth. "
       "It suits fast sweeps.";
   struct Params {
-    double latency = 29.1;    // tRCD + CL of GDDR6-14000: a closed row
-    double efficiency = 0.9;  // Choice: about what refresh and turnarounds leave to streams
+    double latency = 29.1;    // tRCD + CL of GDDR6-14000, as for a closed row
+    double efficiency = 0.9;  // Choice: about the share that refresh and turnarounds leave to streams
     static constexpr auto params() {
       return std::tuple{param(&Params::latency, "latency", "ns",
                               "Time from the beginning of a read's service to its first data.", 0.0, 1e5),
@@ -33,7 +34,7 @@ class Simple final : public DramModel {
   Simple(const Params& params, const Context& context)
       : DramModel(context, DramTiming(context.params).data),
         latency_(DramClock(std::ceil(params.latency * context.params.clock_mhz / 1000.0 - 1e-6))),
-        // The distance is in parts of a clock, 2^10 to each, so that any efficiency is met in the long run.
+        // The spacing is in parts of a clock, 2^10 to a clock, so that any efficiency is met in the long run.
         spacing_(
             std::max<DramClock>(data_clocks_ << kFraction,
                                 DramClock(std::ceil(double(data_clocks_ << kFraction) / params.efficiency)))),
@@ -85,7 +86,8 @@ class Simple final : public DramModel {
     returns_.push({clocks_.cycle_after(request.start + latency_ + data_clocks_), request.line,
                    request.sectors, clocks_.cycle_after(request.start)});
   }
-  // Attributes the clocks up to `until`. `waiting` says whether a request waited in those without data.
+  // Counts each clock up to `until` under one reason. `waiting` says whether a request waited in the clocks
+  // without data.
   void account(DramClock until, bool waiting) {
     if (until <= accounted_) return;
     const DramClock data = std::clamp(data_until_, accounted_, until) - accounted_;
@@ -99,7 +101,7 @@ class Simple final : public DramModel {
 
   const DramClock latency_, spacing_;
   Ring<Waiting> waiting_;
-  DramClock free_at_ = 0;  // in parts of a clock
+  DramClock free_at_ = 0;  // earliest start of the next transfer, in parts of a clock
   DramClock accounted_ = 0, data_until_ = 0;
 };
 

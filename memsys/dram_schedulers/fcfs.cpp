@@ -1,4 +1,5 @@
-// DRAM scheduler `fcfs`: requests go in order of arrival over all banks, the baseline for FR-FCFS.
+// Implements the DRAM scheduler `fcfs`: requests go in order of arrival over all banks. It is the baseline
+// for FR-FCFS.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 #include <vector>

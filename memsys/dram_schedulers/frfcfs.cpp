@@ -1,4 +1,5 @@
-// DRAM scheduler `frfcfs`: row hits go first, then the oldest request (FR-FCFS; Rixner et al., ISCA 2000).
+// Implements the DRAM scheduler `frfcfs`: row hits go first, then the oldest request (FR-FCFS; Rixner et al.,
+// ISCA 2000).
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 #include <vector>
@@ -54,7 +55,7 @@ class FrFcfs final : public DramScheduler {
   };
   struct Bank {
     uint32_t first = kNone, last = kNone;
-    uint32_t overtaken = 0;  // picks in a row that passed over the oldest
+    uint32_t overtaken = 0;  // number of picks in a row that passed over the oldest request
   };
   Params params_;
   std::vector<Link> links_;  // by slot

@@ -1,5 +1,5 @@
-// DRAM scheduler `write_drain`: FR-FCFS holds writes back and drains many at once, so that the data bus turns
-// less often.
+// Implements the DRAM scheduler `write_drain`: FR-FCFS holds writes back and drains many at once, so that the
+// data bus turns less often.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <tuple>
@@ -62,7 +62,8 @@ class WriteDrain final : public DramScheduler {
   struct Link {
     uint32_t row = 0, next = kNone;
   };
-  struct List {  // of one bank and direction, oldest first
+  // Holds the requests of one bank and one direction, oldest first.
+  struct List {
     uint32_t first = kNone, last = kNone;
   };
 
@@ -78,8 +79,8 @@ class WriteDrain final : public DramScheduler {
 
   const uint32_t high_, low_;
   std::vector<Link> links_;  // by slot
-  std::vector<List> lists_;  // bank * 2 + write
-  uint32_t count_[2] = {};   // reads, writes
+  std::vector<List> lists_;  // by bank * 2 + write
+  uint32_t count_[2] = {};   // numbers of waiting reads and writes
   bool draining_ = false;
 };
 

@@ -1,4 +1,4 @@
-// A channel of timestamped messages from several cells to one.
+// Models a channel that carries timestamped messages from several cells to one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -11,13 +11,13 @@
 namespace glint::mem {
 
 // Each producer has an outbox of its own. The consumer sees all messages in order of (arrival, producer,
-// sending order). This order depends on nothing but the messages, so neither windows nor threads change it.
+// sending order). This order depends only on the messages, so neither windows nor threads change it.
 template <class Message>
 class FanIn final : public ChannelBase {
  public:
   explicit FanIn(size_t producers) : outboxes_(producers) {}
 
-  // `arrival` may not decrease from one send of a producer to its next.
+  // Sends a message. `arrival` may not decrease from one message of a producer to its next.
   void send(size_t producer, Cycle arrival, const Message& message) {
     std::vector<Timed>& sent = outboxes_[producer].sent;
     GLINT_DCHECK(sent.empty() || sent.back().arrival <= arrival, "messages must be sent in order");
@@ -38,7 +38,7 @@ class FanIn final : public ChannelBase {
     if (head_ == inbox_.size()) {
       inbox_.clear();
       head_ = 0;
-    } else if (head_ > kCompact && head_ > inbox_.size() / 2) {  // a busy inbox may never run empty
+    } else if (head_ > kCompact && head_ > inbox_.size() / 2) {  // a busy inbox may never become empty
       inbox_.erase(inbox_.begin(), inbox_.begin() + ptrdiff_t(head_));
       head_ = 0;
     }
@@ -64,11 +64,12 @@ class FanIn final : public ChannelBase {
       return arrival != o.arrival ? arrival < o.arrival : producer < o.producer;
     }
   };
-  struct alignas(64) Outbox {  // a cache line of its own: producers run on different threads
+  // Has a cache line of its own, because producers run on different threads.
+  struct alignas(64) Outbox {
     std::vector<Timed> sent;
   };
 
-  // Inserts from the back, because the messages of one window lie close together in time.
+  // Inserts a message from the back, because the messages of one window lie close together in time.
   void insert(const Timed& timed) {
     inbox_.push_back(timed);
     size_t i = inbox_.size() - 1;

@@ -12,17 +12,17 @@
 
 namespace glint::mem {
 
-// From an L1 to a slice of the L2: wants, or writes, sectors of a line.
+// Goes from an L1 to a slice of the L2, and wants or writes sectors of a line.
 struct Packet {
   Address line = 0;
-  uint16_t core = 0;   // the source
-  uint16_t slice = 0;  // the destination
+  uint16_t core = 0;   // number of the source
+  uint16_t slice = 0;  // number of the destination
   uint8_t sectors = 0;
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
-  WordMask words = kAllWords;  // of a write
+  WordMask words = kAllWords;  // words of the line that a write covers
   AtomicLanes atomic{};
-  Token token = 0;  // of an atomic, for its reply; its client and order of acceptance too
+  Token token = 0;  // returns in the reply of an atomic, as its client and its order of acceptance do
   Client client = Client::Lsu;
   uint64_t order = 0;
   Stamps stamps{};
@@ -33,21 +33,21 @@ struct Credit {
   uint16_t allowance = 0;  // number of the sender's count that grows
 };
 
-// From a slice of the L2 to an L1: sectors of a line. A packet may be answered by several replies, sector by
-// sector.
+// Brings sectors of a line from a slice of the L2 to an L1. A packet may be answered by several replies,
+// sector by sector.
 struct Reply {
   Address line = 0;
-  uint16_t slice = 0;  // the source
-  uint16_t core = 0;   // the destination
+  uint16_t slice = 0;  // number of the source
+  uint16_t core = 0;   // number of the destination
   uint8_t sectors = 0;
-  bool is_atomic = false;  // the old values for one access: nothing that a cache keeps
+  bool is_atomic = false;  // whether it has old values for one access, which no cache keeps
   Token token = 0;
   Client client = Client::Lsu;
   uint64_t order = 0;
   Stamps stamps{};
 };
 
-// Address and control beside the data: with one 32-byte sector this makes GPGPU-Sim's 40-byte flit.
+// Address and control travel beside the data. With one 32-byte sector they make GPGPU-Sim's 40-byte flit.
 inline constexpr uint32_t kHeaderBytes = 8;
 
 constexpr uint32_t num_sectors(uint8_t mask) {
@@ -56,11 +56,12 @@ constexpr uint32_t num_sectors(uint8_t mask) {
 constexpr bool is_atomic(const Packet& p) {
   return p.traffic == Traffic::ShaderAtomic;
 }
-// Turns of an atomic at its sectors.
+// Returns the number of turns of an atomic at its sectors.
 constexpr uint32_t num_turns(const Packet& p) {
   return std::max<uint32_t>(p.atomic.turns, num_sectors(p.sectors));
 }
-// Writes and atomics carry data. Model: a sector's worth a sector and turn, as many lanes as it may serve.
+// Writes and atomics carry data. Model: an atomic carries a sector's worth of data for each sector and turn,
+// however many lanes the turn serves.
 constexpr uint32_t bytes_of(const Packet& p) {
   return kHeaderBytes + (is_atomic(p) ? num_turns(p) : p.write ? num_sectors(p.sectors) : 0) * kSectorBytes;
 }

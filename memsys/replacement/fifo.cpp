@@ -1,4 +1,4 @@
-// Replacement `fifo`: the line that came first makes way, however often it is used.
+// Implements the replacement policy `fifo`: the line that came first makes way, however often it is used.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-// Replacement `lru`: the line that has gone unused for longest makes way.
+// Implements the replacement policy `lru`: the line that has gone unused for longest makes way.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <span>

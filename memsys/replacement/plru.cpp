@@ -1,4 +1,5 @@
-// Replacement `plru`: a binary tree of bits over the ways points at a line that was not used lately.
+// Implements the replacement policy `plru`: a binary tree of bits over the ways points at a line that was not
+// used lately.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <tuple>
@@ -12,7 +13,8 @@ namespace {
 
 // Each node of the tree has a bit that names the half that makes way next. An access turns the bits on the
 // way to its line to the other half. An unused slot is taken first. A half that has only held lines is passed
-// over. The tree spans the next power of two of the ways; slots past the last way do not exist.
+// over. The tree spans the number of ways, rounded up to a power of two; slots past the last way do not
+// exist.
 class TreePlru final : public Replacement {
  public:
   static constexpr const char* kName = "plru";
@@ -39,8 +41,8 @@ class TreePlru final : public Replacement {
   }
 
  private:
-  // The way below `node` that makes way, or kNone. Node 1 is the root, the children of node n are 2n and
-  // 2n + 1, and node leaves_ + w is way w.
+  // Returns the number of the way below `node` whose line makes way, or kNone. Node 1 is the root, the
+  // children of node n are 2n and 2n + 1, and node leaves_ + w is way w.
   uint32_t descend(uint32_t set, uint32_t node, std::span<const CacheLine> ways) const {
     if (node >= leaves_) {
       const uint32_t way = node - leaves_;
@@ -52,7 +54,7 @@ class TreePlru final : public Replacement {
   }
 
   const uint32_t ways_, leaves_;
-  std::vector<uint8_t> upper_;  // by set and node: whether the upper half makes way next
+  std::vector<uint8_t> upper_;  // whether the upper half makes way next, by set and node
 };
 
 const Register<Replacement, TreePlru> registered;

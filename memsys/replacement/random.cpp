@@ -1,4 +1,4 @@
-// Replacement `random`: any line of the set makes way, drawn from a seeded sequence.
+// Implements the replacement policy `random`: a seeded sequence draws the line of the set that makes way.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 #include <vector>
@@ -9,8 +9,8 @@
 namespace glint::mem {
 namespace {
 
-// The mixing function of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): every input bit reaches every output
-// bit.
+// Returns the mixing function of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), in which every input bit
+// reaches every output bit.
 uint64_t mix(uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58'476d'1ce4'e5b9ull;
   x = (x ^ (x >> 27)) * 0x94d0'49bb'1331'11ebull;
@@ -18,8 +18,8 @@ uint64_t mix(uint64_t x) {
 }
 
 // An unused slot is taken first. Each set has a sequence of its own: draw n of a set depends on the seed, the
-// set and n. Model: where the drawn line is held, the next line that is not held makes way, so that a line
-// behind held lines goes more often than others.
+// set and n. Model: where the drawn line is held, the next line that is not held makes way. A line behind
+// held lines therefore makes way more often than others.
 class Random final : public Replacement {
  public:
   static constexpr const char* kName = "random";
@@ -49,7 +49,7 @@ class Random final : public Replacement {
  private:
   const uint32_t ways_;
   const uint64_t seed_;
-  std::vector<uint64_t> draws_;  // by set: lines that were filled
+  std::vector<uint64_t> draws_;  // number of lines that were filled, by set
 };
 
 const Register<Replacement, Random> registered;

@@ -1,4 +1,4 @@
-// The slots of each set in an order from newest to oldest: what `lru` and `fifo` keep.
+// Keeps the slots of each set in an order from newest to oldest, for the policies `lru` and `fifo`.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Replacement `srrip`: lines are used again soon or late, and a line that is expected latest makes way.
+// Implements the replacement policy `srrip`: it predicts how soon each line is used again, and the line that
+// is expected latest makes way.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <tuple>
@@ -10,8 +11,8 @@
 namespace glint::mem {
 namespace {
 
-// Static re-reference interval prediction with hit priority (Jaleel et al., ISCA 2010). A new line is
-// expected late, a line that is used again is expected at once, and when no line is expected latest, all
+// This is static re-reference interval prediction with hit priority (Jaleel et al., ISCA 2010). A new line is
+// expected late, and a line that is used again is expected at once. When no line is expected latest, all
 // lines of the set age together. An unused slot is taken first. Model: where the lines that are expected
 // latest are held, the latest of the others makes way.
 class Srrip final : public Replacement {
@@ -21,7 +22,7 @@ class Srrip final : public Replacement {
       "The line that is expected to be used again latest makes way (static re-reference interval "
       "prediction).";
   struct Params {
-    uint32_t bits = 2;  // Jaleel et al.: 2 bits a line
+    uint32_t bits = 2;  // Jaleel et al.: 2 bits per line
     static constexpr auto params() {
       return std::tuple{
           param(&Params::bits, "bits", "bit", "Bits of the expected interval that each line has.", 1, 7)};
@@ -43,7 +44,7 @@ class Srrip final : public Replacement {
   }
   void filled(uint32_t slot) override {
     const auto set = expected_.begin() + ptrdiff_t(slot / ways_ * ways_);
-    const uint8_t age = latest_ - expected_[slot];  // what the set ages until this line is expected latest
+    const uint8_t age = latest_ - expected_[slot];  // steps by which the set ages until this line is latest
     std::for_each(set, set + ways_, [&](uint8_t& line) { line = std::min<uint8_t>(line + age, latest_); });
     expected_[slot] = latest_ - 1;
   }
@@ -53,7 +54,7 @@ class Srrip final : public Replacement {
  private:
   const uint32_t ways_;
   const uint8_t latest_;
-  std::vector<uint8_t> expected_;  // by slot: the predicted re-reference interval
+  std::vector<uint8_t> expected_;  // predicted re-reference interval, by slot
 };
 
 const Register<Replacement, Srrip> registered;
