@@ -1,4 +1,4 @@
-// How fast the host simulates the memory system: accesses a second, by where they are served.
+// Measures how fast the host simulates the memory system, in accesses per second, by where they are served.
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace {
 using namespace glint;
 using namespace glint::mem;
 
-// Runs windows as the engine does. One core tries one access a cycle; the accesses go over `lines` in order.
+// Runs windows as the engine does. One core tries one access per cycle, over `lines` in order.
 void run(benchmark::State& state, const Params& params, const std::vector<Address>& lines) {
   stats::Group root(nullptr, "bench");
   MemorySystem memory(params, 1, 1365.0, &root);

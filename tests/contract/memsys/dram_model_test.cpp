@@ -20,8 +20,8 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-// Runs 2000 requests in bursts. With `often` the model is advanced in every cycle, not only when it asks to
-// be.
+// Runs 2000 requests in bursts. With `often` the model is advanced in every cycle, not only when it asks for
+// it.
 Outcome exercise(const std::string& name, bool often) {
   const DramParams params;
   stats::Group root(nullptr, "test");
@@ -101,7 +101,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the simple model takes its latency and then one transfer after another") {
-  // Each has 4 clocks of data, and is seen at the next clock.
+  // Each request has 4 clocks of data, and the model sees it at the next clock.
   CHECK(at_once("latency = 30.0\nefficiency = 1.0", 3) ==
         std::vector<Cycle>{11 + 30 + 4, 11 + 34 + 4, 11 + 38 + 4});
   CHECK(at_once("latency = 31.0\nefficiency = 1.0", 1) == std::vector<Cycle>{11 + 31 + 4});

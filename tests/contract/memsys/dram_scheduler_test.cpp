@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kBanks = 8, kSlots = 32;
 
-// Adds and picks at random. Returns the picks in order, and checks each.
+// Adds and picks requests at random. Returns the picks in order, and checks each.
 std::vector<uint32_t> exercise(const std::string& name, uint32_t seed) {
   const auto scheduler = PolicyChoice<DramScheduler>(name.c_str()).make({kBanks, kSlots});
   std::mt19937 random(seed);

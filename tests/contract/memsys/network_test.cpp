@@ -1,4 +1,4 @@
-// The contract of Network, for every registered one, and the times and limits of each.
+// Tests the contract of Network for every registered network, and the times and limits of each.
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/network.h"
 
@@ -39,8 +39,8 @@ NocParams with_credits(uint32_t credits) {
   return params;
 }
 
-// A message that a port has taken. Lines number the packets of a core, and a reply has the line of its
-// packet.
+// Describes a message that a port has taken. Lines number the packets of a core, and a reply has the line of
+// its packet.
 struct Taken {
   Cycle at = 0;
   uint16_t from = 0, to = 0;
@@ -61,7 +61,7 @@ class Moods {
   const uint32_t of_8_;
 };
 
-// A network with all its users. Each user has its own state, as a cell has.
+// Holds a network with all its users. Each user has its own state, as a cell has.
 class Rig {
  public:
   Rig(const PolicyChoice<Network>& choice, uint16_t cores, uint16_t slices, const NocParams& params)
@@ -70,7 +70,7 @@ class Rig {
     for (uint16_t s = 0; s < slices; ++s) slices_.push_back({network_->slice_port(s), Moods(1000 + s, 2)});
   }
 
-  // Each core sends `packets`, to any slice or to slice `only`.
+  // Each core sends `packets` packets, to any slice or to slice `only`.
   uint32_t packets = 300;
   int only = -1;
   bool slices_take = true, cores_take = true;
@@ -202,7 +202,7 @@ TEST_CASE("every network brings every packet and every reply to its destination 
         CHECK(rig.sent() == 300u * shape.cores);
         REQUIRE(packets.size() == rig.sent());
         REQUIRE(replies.size() == packets.size());
-        std::map<std::pair<uint16_t, Address>, Taken> of_core;  // by core and line: each packet once
+        std::map<std::pair<uint16_t, Address>, Taken> of_core;  // holds each packet once, by core and line
         for (const Taken& p : packets) REQUIRE(of_core.emplace(std::pair{p.from, p.line}, p).second);
         for (const Taken& r : replies) {
           const auto packet = of_core.extract({r.to, r.line});
@@ -315,7 +315,7 @@ TEST_CASE("the mesh holds as many packets as its buffers on the way have entries
 
 TEST_CASE("an unloaded packet crosses the mesh in the time of its hops, its two ports and its links") {
   NocParams params;
-  constexpr int kCores[] = {0, 2, 4, 6}, kSlices[] = {1, 3, 5, 7, 8};  // routers, in three rows of three
+  constexpr int kCores[] = {0, 2, 4, 6}, kSlices[] = {1, 3, 5, 7, 8};  // routers in three rows of three
   for (uint16_t core = 0; core < 4; ++core)
     for (uint16_t slice = 0; slice < 5; ++slice) {
       const auto network = chosen("mesh", "hop_latency = 5\nport_latency = 9\n").make({params, 4, 5});
@@ -323,7 +323,7 @@ TEST_CASE("an unloaded packet crosses the mesh in the time of its hops, its two 
       std::vector<SlicePort> slices;
       for (uint16_t c = 0; c < 4; ++c) cores.push_back(network->core_port(c));
       for (uint16_t s = 0; s < 5; ++s) slices.push_back(network->slice_port(s));
-      cores[core].send(100, {.core = core, .slice = slice, .sectors = 1, .write = true});  // 40 bytes
+      cores[core].send(100, {.core = core, .slice = slice, .sectors = 1, .write = true});  // has 40 bytes
       for (Cycle now = 100; now < 200; ++now) {
         for (ChannelBase* channel : network->channels()) channel->deliver();
         for (Cell* cell : network->cells()) cell->advance(now, now + 1);

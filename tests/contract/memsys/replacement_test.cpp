@@ -38,7 +38,7 @@ struct Cache {
   std::unique_ptr<Replacement> policy;
 };
 
-// Makes one random event of the set. Returns the slot that it chose, or kNone.
+// Makes one random event in the set. Returns the slot that it chose, or kNone.
 uint32_t random_event(Cache& cache, uint32_t set, std::mt19937& random) {
   const uint32_t slot = set * cache.ways + uint32_t(random() % cache.ways);
   CacheLine& line = cache.lines[slot];
@@ -204,9 +204,9 @@ TEST_CASE("srrip takes a line that lost its sectors first, and ages no other lin
   tags.touch(tags.find(0));
   tags.drop(tags.find(0), 1);
   CHECK_FALSE(tags.victim(384).used());
-  tags.insert(384).valid = 1;  // expected at 2, like 128 and 256
+  tags.insert(384).valid = 1;  // has the value 2, like 128 and 256
   tags.touch(tags.find(128));
-  CHECK(tags.victim(512).address == 384);  // the lower slot of two that are expected at 2
+  CHECK(tags.victim(512).address == 384);  // is in the lower slot of two lines with the value 2
 }
 
 TEST_CASE("random draws every way about as often, another seed draws another sequence") {

@@ -1,5 +1,5 @@
-// Tests random traffic: counts against a simple reference, and independence of windows, skipping and
-// repetition.
+// Tests with random traffic that the counts are those of a simple reference, and that windows, skipping and
+// repetition change nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <map>
@@ -16,7 +16,7 @@ using namespace glint::mem;
 namespace {
 
 constexpr uint32_t kCores = 3;
-constexpr uint32_t kRequests = 1500;  // per core
+constexpr uint32_t kRequests = 1500;  // number of requests per core
 
 // Returns parameters so small that every limit is met.
 Params cramped(uint32_t variant) {
@@ -103,7 +103,7 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-constexpr Cycle kEnd = 2'000'000;  // accounts are closed here, whatever the window is
+constexpr Cycle kEnd = 2'000'000;  // the counts end here, whatever the window is
 
 Outcome simulate(uint32_t variant, Cycle window, bool step, uint32_t seed = 5) {
   MemoryRig rig(cramped(variant), kCores, 1365.0);
@@ -173,7 +173,7 @@ TEST_CASE("stepping every cycle gives what skipping gives") {
 TEST_CASE("without reuse every read fetches its sectors once, through L2 and DRAM alike") {
   Params params;
   MemoryRig rig(params, 1);
-  constexpr uint32_t kLines = 3000;  // beyond the L1 and the L2
+  constexpr uint32_t kLines = 3000;  // is more than L1 and L2 hold
   uint64_t sectors = 0;
   std::mt19937 random(1);
   Token next = 0;

@@ -15,7 +15,7 @@ namespace {
 DramParams refreshed(const char* mode) {
   DramParams p = plain();
   p.refresh = mode;
-  p.refi = std::string_view(mode) == "per_bank" ? 16'000 : 1000;  // 16 banks in turn
+  p.refi = std::string_view(mode) == "per_bank" ? 16'000 : 1000;  // the 16 banks take turns
   p.rfc = 200, p.rfc_bank = 60;
   return p;
 }
@@ -29,7 +29,7 @@ uint64_t use(const DramRig& rig, DramUse what) {
 TEST_CASE("a request that comes while all banks refresh waits until exactly the refresh's end") {
   DramRig rig(refreshed("all_bank"));
   rig.idle_until(1100);
-  CHECK(rig.read_alone(3, 1) == 100 + 15 + 14 + kData);  // activate at clock 1200
+  CHECK(rig.read_alone(3, 1) == 100 + 15 + 14 + kData);  // the row opens at clock 1200
   rig.idle_until(2216 - kEdge);                          // the row that was opened must be closed first
   CHECK(rig.read_alone(3, 1) == kEdge + 15 + 14 + kData);
   rig.idle_until(3216 - kEdge - 1);
@@ -59,19 +59,19 @@ TEST_CASE("a row that was open is closed by a refresh, and the bank opens it aga
 
 TEST_CASE("a refresh takes the row from a request that waits for its column command") {
   DramRig rig(refreshed("all_bank"));
-  rig.add(990 - kEdge, 0, 1, false, 1);  // activate at 990, the read would be at 1005
+  rig.add(990 - kEdge, 0, 1, false, 1);  // the row opens at 990, and the read would be at 1005
   CHECK(rig.run()[1] == 990 + 30 + 16 + 200 + 15 + 14 + kData);
   CHECK(rig.channel.stats().reopened.value() == 1);
   CHECK(rig.channel.stats().activates.value() == 2);
 
   DramRig sooner(refreshed("all_bank"));
-  sooner.add(984 - kEdge, 0, 1, false, 1);  // activate at 984, read at 999: before the refresh
+  sooner.add(984 - kEdge, 0, 1, false, 1);  // the row opens at 984; the read at 999 is before the refresh
   CHECK(sooner.run()[1] == 984 + 15 + 14 + kData);
   CHECK(sooner.channel.stats().reopened.value() == 0);
 }
 
 TEST_CASE("one bank's refresh leaves the others alone, and the banks take turns") {
-  DramRig rig(refreshed("per_bank"));  // bank 0 at 1000, bank 1 at 2000
+  DramRig rig(refreshed("per_bank"));  // bank 0 is refreshed at 1000, bank 1 at 2000
   rig.idle_until(1010);
   rig.add(1010, 0, 1, false, 1);
   rig.add(1010, 1, 1, false, 2);
@@ -126,7 +126,7 @@ TEST_CASE("a stream loses the share of refresh and of opening its rows again, an
   const Cycle without = clocks("none"), with = clocks("all_bank");
   CHECK(without >= 4000 * kData);
   // There are 16,000 clocks of data in pieces of at most 800 less the drain, which gives at least 20
-  // refreshes, each of 200 and at most tRAS + tRP + tRCD + tCL more.
+  // refreshes. Each takes 200 clocks, and at most tRAS + tRP + tRCD + tCL more.
   CHECK(with > without + 20 * 200);
   CHECK(with < without + 22 * (200 + 30 + 16 + 15 + 14 + 20));
 }
@@ -152,7 +152,7 @@ TEST_CASE("the bus stays idle for as many clocks as it takes to turn from readin
     rig.read_alone(0, 1), rig.read_alone(1, 1), rig.read_alone(2, 1);
     rig.add(9000, 0, 1, false, 1);
     rig.add(9000, 1, 1, true);
-    rig.add(9025, 2, 1, false, 3);  // after the write
+    rig.add(9025, 2, 1, false, 3);  // comes after the write
     return rig.run()[3];
   };
   CHECK(third(3) == third(2) + 1);
@@ -167,8 +167,8 @@ TEST_CASE(
     params.rrd_s = params.rrd_l = 1;
     DramRig rig(params);
     rig.read_alone(1, 1);
-    rig.add(9000, 0, 1, false, 1);  // activate at 9001
-    rig.add(9001, 1, 1, false, 2);  // its row is open: read at 9002 when the bus is free
+    rig.add(9000, 0, 1, false, 1);  // the row opens at 9001
+    rig.add(9001, 1, 1, false, 2);  // its row is open, so the read is at 9002 when the bus is free
     return rig.run()[2];
   };
   const Cycle free = 9002 + 14 + kData;

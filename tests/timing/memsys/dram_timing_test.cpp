@@ -51,7 +51,7 @@ TEST_CASE("activates are spaced by tRRD and the fifth waits for the window of fo
   params.dual_command_bus = true;
   DramRig rig(params);
   for (uint32_t i = 0; i < 5; ++i)
-    rig.add(0, i, 1, false, i + 1);  // banks 0 to 3 in groups 0 to 3, bank 4 in group 0
+    rig.add(0, i, 1, false, i + 1);  // banks 0 to 3 are in groups 0 to 3, and bank 4 is in group 0
   auto at = rig.run();
   const Cycle first = kEdge + 15 + 14 + kData;
   CHECK(at[1] == first);
@@ -92,7 +92,7 @@ TEST_CASE("a write after a read waits until the bus can turn") {
   rig.read_alone(0, 1), rig.read_alone(1, 1);
   rig.add(9000, 0, 1, false, 1);
   rig.add(9000, 1, 1, true);
-  rig.add(9000, 2, 1, false, 3);  // ends after the write: activate, and tWTR after the write
+  rig.add(9000, 2, 1, false, 3);  // its read waits for the activate and for tWTR after the write
   auto at = rig.run();
   const Cycle write_at = 9000 + kEdge + 14 + kData + 2 - 4;
   CHECK(at[3] == write_at + 4 + kData + 8 + 14 + kData);
@@ -108,7 +108,7 @@ TEST_CASE("a written row is not closed before its write recovery") {
 
 TEST_CASE("a row that was read is not closed before tRTP, and a short tRC does not close it before tRAS") {
   DramParams params = plain();
-  params.ras = 20, params.rc = 30;  // less than tRAS + tRP
+  params.ras = 20, params.rc = 30;  // tRC is less than tRAS + tRP
   DramRig rig(params);
   rig.read_alone(0, 1);
   rig.add(9000, 0, 1, false, 1);
@@ -201,7 +201,7 @@ TEST_CASE("every command clock is attributed and the ratios follow their definit
   CHECK(s.use.count(DramUse::Idle) == 1000 - 8 - 16);
   rig.add(2000, 0, 2, false, 3);
   rig.run();
-  CHECK(s.use.count(DramUse::RowWait) == 16);  // precharge to activate
+  CHECK(s.use.count(DramUse::RowWait) == 16);  // clocks from precharge to activate
 }
 
 TEST_CASE("a full queue says so and frees a place with each column command") {

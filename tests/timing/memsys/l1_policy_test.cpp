@@ -1,5 +1,5 @@
-// Tests what the L1's allocation and write policies, and fills at its ports, change, to the cycle and to the
-// line.
+// Tests to the cycle and to the line what the L1's allocation and write policies change, and what fills
+// change at its ports.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
@@ -120,7 +120,7 @@ TEST_CASE("a write allocates the sectors it covers when asked to, and no others"
     // The write covers half of sector 1.
     REQUIRE(rig.l1().access(0, Client::Lsu, write(0, 0b0011, Traffic::ShaderGlobal, 0x0fff)));
     rig.drain();
-    CHECK(rig.l1().packets_sent() == 1);  // written through all the same
+    CHECK(rig.l1().packets_sent() == 1);  // the write went through all the same
     CHECK(rig.read_latency(0, 0b0001) == (allocate ? params.l1.hit_latency : kL2Hit));
     CHECK(rig.read_latency(0, 0b0010) == kL2Hit);
   }
@@ -135,7 +135,7 @@ TEST_CASE("global writes stay in the L1 until eviction when it writes them back"
   rig.drain();
   CHECK(rig.l1().packets_sent() == 0);
   CHECK(rig.read_latency(0, 1) == params.l1.hit_latency);
-  rig.read_latency(128, 1), rig.read_latency(256, 1);  // evicts line 0
+  rig.read_latency(128, 1), rig.read_latency(256, 1);  // these evict line 0
   CHECK(rig.l1().stats().write_backs.value() == 1);
   CHECK(rig.l1().packets_sent() == 3);
   rig.memory().check_drained();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr Address kLine = 128 * 1000;
 
-// Returns the README's formula. One sector fits a default port in one cycle.
+// Returns what the formula of memsys/README.md gives. One sector fits a default port in one cycle.
 Cycle l2_hit_round_trip(const Params& p) {
   return p.l1.miss_latency + 1 + p.noc.request_latency + p.l2.latency + 1 + p.noc.reply_latency;
 }
@@ -89,7 +89,7 @@ TEST_CASE("misses of different lines leave the request port one a cycle") {
   Params params;
   params.l1.ports = 4, params.l1.banks = 64;
   MemoryRig rig(params);
-  for (Address i = 0; i < 4; ++i) rig.read_latency(kLine + i * 128, 1, true);  // all in L2
+  for (Address i = 0; i < 4; ++i) rig.read_latency(kLine + i * 128, 1, true);  // the L2 then has all
   const Cycle start = rig.now();
   rig.run([&](uint32_t, Cycle now) {
     if (now == start)
@@ -105,8 +105,9 @@ TEST_CASE("a narrow request port spaces write packets by their bytes") {
   params.noc.core_request_bytes = 8;
   MemoryRig rig(params);
   const Cycle start = rig.now();
-  REQUIRE(rig.l1().access(start, Client::Lsu, write(kLine, 0b1111)));         // 136 bytes: 17 cycles
-  REQUIRE(rig.l1().access(start + 1, Client::Lsu, write(kLine + 128, 0b1)));  // ready a cycle later, waits 16
+  // The first write has 136 bytes, which take 17 cycles. The second is ready a cycle later and waits for 16.
+  REQUIRE(rig.l1().access(start, Client::Lsu, write(kLine, 0b1111)));
+  REQUIRE(rig.l1().access(start + 1, Client::Lsu, write(kLine + 128, 0b1)));
   rig.drain();
   CHECK(rig.l1().stats().request_bytes.value() == 136 + 40);
   CHECK(rig.l1().stats().request_wait.value() == 16);
@@ -190,7 +191,7 @@ TEST_CASE("a write updates sectors that are present and allocates no line") {
   MemoryRig rig(params);
   rig.read_latency(kLine, 1, true);
   CHECK(rig.l1().stats().write_hits.total() == 0);
-  CHECK(rig.read_latency(kLine, 1) == 160);  // missed L1
+  CHECK(rig.read_latency(kLine, 1) == 160);  // the write left nothing in the L1
   rig.read_latency(kLine, 1, true);
   CHECK(rig.l1().stats().write_hits.total() == 1);
   CHECK(rig.read_latency(kLine, 1) == params.l1.hit_latency);
@@ -206,7 +207,7 @@ TEST_CASE("local writes stay in the L1 until their line is evicted") {
   rig.drain();
   CHECK(l1.packets_sent() == 0);
   CHECK(rig.read_latency(0, 0b0011) == params.l1.hit_latency);
-  CHECK(l1.access(rig.now(), Client::Lsu, write(256, 0b0001, Traffic::ShaderLocal)));  // evicts line 128
+  CHECK(l1.access(rig.now(), Client::Lsu, write(256, 0b0001, Traffic::ShaderLocal)));  // this evicts line 128
   rig.drain();
   CHECK(l1.stats().write_backs.value() == 1);
   CHECK(l1.stats().request_bytes.value() == 136);

@@ -47,7 +47,7 @@ TEST_CASE(
     "a slice on the far side is reached later by the far latency, each way, and one on the near side is "
     "not") {
   Params params = bare();
-  params.noc.sides = 2, params.noc.far_latency = 78;  // cores 0, 1 and slices 0, 1 against 2, 3 and 2, 3
+  params.noc.sides = 2, params.noc.far_latency = 78;  // one side has cores and slices 0 and 1
   MemoryRig rig(params, 4);
   for (uint32_t slice = 0; slice < 4; ++slice) {
     const Address line = lines_of(rig.memory().map(), slice, 1)[0];
@@ -110,8 +110,8 @@ TEST_CASE(
   };
   CHECK(second(2) == kL2Hit + 1);
   CHECK(second(0) == kL2Hit + 1);
-  // The first is served at 20 + 1 + 48, and its credit is back 1 + 48 later. Then follow the second's 1 + 48,
-  // slice and way back.
+  // The first packet is served at 20 + 1 + 48, and its credit is back 1 + 48 later. Then the second takes its
+  // 1 + 48, the slice and the way back.
   CHECK(second(1) == (20 + 49) + 49 + 49 + 42 + 49);
 }
 
@@ -178,14 +178,14 @@ TEST_CASE("a sector written in part takes the slice for its interval, a whole on
   const auto whole = run(0, 0xff), part = run(9, 0x7f);
   CHECK(run(9, 0xff) == whole);
   CHECK(run(0, 0x7f) == whole);
-  CHECK(part.second - whole.second == 9 - 1);  // the write's end, and with it a launch's
-  CHECK(part.first - whole.first == 9 - 1);    // the read behind it
+  CHECK(part.second - whole.second == 9 - 1);  // the write ends later, and so does a launch
+  CHECK(part.first - whole.first == 9 - 1);    // the read behind the write ends later
 }
 
 TEST_CASE(
     "a write takes the slice for its visit and its sectors, in sixteenths of a cycle that add up over those "
     "that wait") {
-  // The writes come a cycle apart and wait for each other. This returns when the last has been served.
+  // Returns when the last write has been served. The writes come a cycle apart and wait for each other.
   const auto end = [](uint32_t writes, uint8_t sectors, WordMask words) {
     Params params = bare();
     params.l2.write_visit = 1.25;
@@ -239,8 +239,8 @@ TEST_CASE("a sector written in part is written back on eviction without having b
 TEST_CASE(
     "a sector from DRAM takes the slice a cycle when they share a port: who is served in that cycle waits "
     "for one") {
-  // Takes a miss, and a hit in the same slice that is asked for `after` cycles later (0: no hit). Returns
-  // when each has its token.
+  // Asks for a miss, and `after` cycles later for a hit in the same slice (0: there is no hit). Returns when
+  // the token of each came back.
   const auto tokens = [](bool shared, Cycle after) {
     Params params = bare();
     params.l2.fill_takes_service = shared;
@@ -258,8 +258,8 @@ TEST_CASE(
     for (const Answered& a : rig.answers()) at[a.token] = a.at - start;
     return at;
   };
-  const Cycle fill = tokens(true, 0)[0] - 49;  // 1 + 48 before its token
-  const Cycle same = fill - (20 + 49);         // asked for then, a packet is served in the cycle of the fill
+  const Cycle fill = tokens(true, 0)[0] - 49;  // the fill is 1 + 48 before its token
+  const Cycle same = fill - (20 + 49);         // a packet asked for then is served in the cycle of the fill
   for (const bool shared : {false, true}) {
     CHECK(tokens(shared, same - 1)[1] == same - 1 + kL2Hit);
     // The slice answers a cycle later.

@@ -31,7 +31,7 @@ Cycle l2_latency(const Params& params, const Request& request) {
   return rig.answers().back().at - start;
 }
 
-// Returns when each token came, from the start on. All are asked for in the first cycle, token i by core i.
+// Returns the cycles from the start to each token. All are asked for in the first cycle, token i by core i.
 std::vector<Cycle> together(const Params& params, const std::vector<Request>& requests) {
   MemoryRig rig(params, uint32_t(requests.size()));
   for (uint32_t core = 0; core < requests.size(); ++core)
@@ -59,7 +59,7 @@ TEST_CASE("a port is as wide as it says, to the byte") {
     for (uint32_t NocParams::*p : {&NocParams::core_request_bytes, &NocParams::core_reply_bytes,
                                    &NocParams::partition_request_bytes, &NocParams::partition_reply_bytes})
       wide.noc.*p = 400;
-    wide.noc.*port = 72;  // two sectors and a header
+    wide.noc.*port = 72;  // two sectors and a header take 72 bytes
     Params narrow = wide;
     narrow.noc.*port = 71;
     CHECK(l2_latency(wide, request) == l2_latency(
@@ -96,9 +96,9 @@ TEST_CASE("lanes of an atomic that take turns take the slice's time for each, an
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 - 1 + 2);
   params.l2.atomic_lane_interval = 0.125;
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 + 4 - 1 + 2);
-  turns.atomic.lanes = 33;  // an eighth of a cycle more is a cycle
+  turns.atomic.lanes = 33;  // an eighth of a cycle more takes a whole cycle
   CHECK(l2_latency(params, turns) == kL2Hit + 3 * 5 + 5 - 1 + 2);
-  turns.atomic = {.lanes = 0, .turns = 1};  // never fewer than sectors
+  turns.atomic = {.lanes = 0, .turns = 1};  // there are never fewer turns than sectors
   turns.sectors = 0b11;
   CHECK(l2_latency(params, turns) == kL2Hit + 2 * 5 - 1 + 2);
 }
@@ -133,7 +133,7 @@ TEST_CASE("a dirty line that is evicted goes to DRAM after the way there") {
       if (!seen && rig.memory().partition(0).dram().stats().requests.value() == 1) seen = now;
       return seen || now > start + 10'000 ? kNever : now + 1;
     });
-    CHECK(seen == start + 20 + 49 + way + 1);  // served, on its way, and the cycle after
+    CHECK(seen == start + 20 + 49 + way + 1);  // the slice serves it, it travels, and the next cycle sees it
   }
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("an MSHR of a slice merges up to its limit, the first read included") 
     return at[2] - at[0];
   };
   CHECK(later(3) <= 2);
-  CHECK(later(2) >= 42);  // served again after the fill: the slice's latency
+  CHECK(later(2) >= 42);  // it is served again after the fill, with the slice's latency
 }
 
 TEST_CASE("the way to DRAM holds as many sectors as it says") {
@@ -192,9 +192,9 @@ TEST_CASE(
   b.add(Traffic::RtNode, 1000);
   CHECK(stats.reads(Traffic::RtNode) == 100);
   CHECK(stats.reads(Traffic::ShaderGlobal) == 0);
-  CHECK(stats.percentile(Traffic::RtNode, 50) == 21);  // 20 and 21
+  CHECK(stats.percentile(Traffic::RtNode, 50) == 21);  // the bucket is 20 to 21
   CHECK(stats.percentile(Traffic::RtNode, 90) == 21);
-  CHECK(stats.percentile(Traffic::RtNode, 91) == 175);  // 160 to 175
+  CHECK(stats.percentile(Traffic::RtNode, 91) == 175);  // the bucket is 160 to 175
   CHECK(stats.percentile(Traffic::RtNode, 99) == 175);
   CHECK(stats.percentile(Traffic::RtNode, 100) == 1023);
   CHECK(stats.percentile(Traffic::ShaderGlobal, 50) == 0);

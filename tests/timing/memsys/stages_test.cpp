@@ -87,7 +87,7 @@ TEST_CASE("packets that meet at a slice wait in its queue, and the stages add up
   params.l1.mshr_entries = 64;
   MemoryRig rig(params, 4);
   std::array<uint32_t, 4> sent{};
-  rig.run([&](uint32_t core, Cycle now) {  // all of one partition, four sectors each
+  rig.run([&](uint32_t core, Cycle now) {  // all reads are of one partition and of four sectors
     const Address line = Address{256} * params.dram.channels * (sent[core] + core * 1000);
     if (rig.l1(core).access(now, Client::RtUnit, {line, 0xf, false, Traffic::RtNode, sent[core]}))
       ++sent[core];
@@ -105,7 +105,7 @@ TEST_CASE("packets that meet at a slice wait in its queue, and the stages add up
   CHECK(misses == 400);
   CHECK(all[size_t(Stage::L2Queue)] > 0);
   CHECK(all[size_t(Stage::DramQueue)] > all[size_t(Stage::DramService)]);
-  // These are what nothing can delay: the slice's own latency and the way to DRAM.
+  // Nothing can delay these two: the slice's own latency and the way to DRAM.
   CHECK(all[size_t(Stage::L2Service)] == 400 * 42);
   CHECK(all[size_t(Stage::DramWay)] == 400 * 100);
   CHECK(cycles > 400 * 276);

@@ -1,4 +1,4 @@
-// Tests the small structures of the caches: line table, tags, MSHRs, fan-in, address maps.
+// Tests the small structures of the memory system: line table, tags, MSHRs, fan-in, address maps.
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 #include <random>
@@ -144,7 +144,7 @@ TEST_CASE("strides of the number of partitions still reach every partition") {
   PartitionMap map(12, 1, 256);
   std::vector<int> count(12);
   for (uint32_t i = 0; i < 1200; ++i) ++count[map.partition(Address{i} * 12 * 256)];
-  for (const int n : count) CHECK(n > 60);  // 100 on average
+  for (const int n : count) CHECK(n > 60);  // the average is 100
 }
 
 TEST_CASE("a line that is held is not a victim, and a set of such lines has none") {
@@ -191,6 +191,6 @@ TEST_CASE("times in nanoseconds round up to whole clocks") {
   const DramTiming t(p);
   CHECK(t.rcd == 15);
   CHECK(t.rp == 16);
-  CHECK(t.data == 4);   // 16 transfers at 4 per clock
-  CHECK(t.ccd_s == 4);  // never shorter than the data
+  CHECK(t.data == 4);   // there are 16 transfers at 4 per clock
+  CHECK(t.ccd_s == 4);  // tCCD is never shorter than the data
 }
