@@ -24,10 +24,10 @@ class AnyHitMode {
   using ShaderOf = std::function<uint32_t(int lane, const Candidate& candidate)>;
 
   virtual ~AnyHitMode() = default;
-  // Returns how many candidates a ray's table holds, at most kMaxTableRows; 0: rays have no table.
+  // Returns how many candidates a ray's table holds, at most kMaxTableRows. 0 means that rays have no table.
   virtual uint32_t table_rows() const = 0;
-  // All rays of `lanes` have Gathered candidates. Chooses which of the lanes run which candidate next and
-  // calls rt::present() for them; the others wait.
+  // Chooses which of the lanes run which candidate next and calls rt::present() for them; the others wait.
+  // The rays of all `lanes` have Gathered candidates.
   virtual void present(RayState* rays, LaneMask lanes, const ShaderOf& shader_of) const = 0;
 };
 

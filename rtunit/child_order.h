@@ -16,7 +16,7 @@ struct ChildHits {
 };
 
 // Contract (tests/contract/rt_child_order_test.cpp):
-//  - sort() writes each of 0 .. hits.count - 1 to `order` once, the child to be visited first to order[0].
+//  - sort() writes each of 0 .. hits.count - 1 to `order` once; order[0] is the child to be visited first.
 //  - The choice depends on the argument alone: an order has no state and serves all rays.
 class ChildOrder {
  public:
@@ -24,11 +24,12 @@ class ChildOrder {
   struct Context {};
   virtual ~ChildOrder() = default;
   virtual void sort(const ChildHits& hits, uint8_t* order) const = 0;
-  // Returns the order that rays are told to use; null: nearest_first(), which is compiled into the traversal.
+  // Returns the order that rays are told to use. Null stands for nearest_first(), which is compiled into the
+  // traversal.
   virtual const ChildOrder* for_rays() const { return this; }
 };
 
-// Sorts by distance; of equal distances the lower child comes first.
+// Sorts by distance. Of two children at the same distance, the one with the lower index comes first.
 inline void nearest_first(const ChildHits& hits, uint8_t* order) {
   for (int i = 0; i < hits.count; ++i) {
     int at = i;

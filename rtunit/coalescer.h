@@ -18,7 +18,7 @@ class Coalescer {
   struct Context {};
   virtual ~Coalescer() = default;
   // Returns the warps, as a mask of their slots, whose lanes share the fetch made for a lane of `picked` when
-  // they want the same node. 0: no lane shares it, not even one of the same warp.
+  // they want the same node. 0 means that no lane shares it, not even one of the same warp.
   virtual uint64_t partners(uint32_t picked, std::span<const WarpView> warps) const = 0;
 };
 

@@ -1,7 +1,7 @@
 // Declares the interface of the policies that choose how internal nodes are written.
 //
-// A format is one pair of files in rtunit/formats/. `<name>.cpp` encodes nodes and registers the format;
-// `<name>.h` holds a struct with kWidth, kNodeBytes and the static test() that traversal is compiled for
+// A format is a pair of files in rtunit/formats/. `<name>.cpp` encodes nodes and registers the format.
+// `<name>.h` holds a struct with kWidth, kNodeBytes and the static test() that the traversal is compiled for
 // (traversal.cpp lists it by FormatId).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -17,21 +17,21 @@
 
 namespace glint::rt {
 
-// Holds a tree as the builder hands it over. Node 0 is the root and internal; leaves point to their bytes in
-// `leaf_bytes`.
+// Holds a tree as the builder hands it over. Node 0 is the root and always internal. Leaves point to their
+// bytes in `leaf_bytes`.
 struct BuildTree {
   struct Node {
     Bounds bounds;
     NodeKind kind = NodeKind::Internal;
-    uint32_t first_child = 0, num_children = 0;  // in `children`; internal nodes
-    uint32_t leaf_block = 0;                     // in blocks from the start of leaf_bytes; leaves
+    uint32_t first_child = 0, num_children = 0;  // first index in `children`, for internal nodes
+    uint32_t leaf_block = 0;                     // blocks from the start of leaf_bytes, for leaves
   };
   std::vector<Node> nodes;
   std::vector<uint32_t> children;  // indices into nodes
   std::vector<std::byte> leaf_bytes;
 };
 
-// Describes a child as found in encoded bytes. Validation and tools use it, the traversal does not.
+// Describes a child as it was found in encoded bytes. Validation and tools use it, the traversal does not.
 struct DecodedChild {
   NodeRef node = 0;
   Bounds bounds;  // as the traversal sees it
@@ -51,7 +51,7 @@ class NodeFormat {
   virtual FormatId id() const = 0;
   // Returns the largest number of children of a node, at least 2.
   virtual uint32_t width() const = 0;
-  // Returns the bytes of an internal node, which a ray fetches whole; a multiple of kBlockBytes.
+  // Returns the bytes of an internal node, which a ray fetches whole. They are a multiple of kBlockBytes.
   virtual uint32_t node_bytes() const = 0;
   virtual std::vector<std::byte> encode(const BuildTree& tree) const = 0;
   // Writes the children of the internal node whose bytes start at `node` to `out`, which has room for width()

@@ -1,4 +1,4 @@
-// Declares the parameters of an RT unit: warp buffer, request port, test pipelines.
+// Declares the parameters of an RT unit: those of its warp buffer, request port and test pipelines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace glint::rt {
 
-// Describes a pipeline that tests nodes. In each `interval` it starts `units` tests; each is done after
+// Describes a pipeline that tests nodes. It starts `units` tests in each `interval`, and each test takes
 // `latency`.
 struct PipelineParams {
   uint32_t latency = 1, interval = 1, units = 1;
@@ -46,9 +46,9 @@ struct Params {
   uint32_t responses_per_cycle = 1;
   uint32_t mshr_entries = 64;      // Vulkan-Sim has -gpgpu_rt_max_mshr_entries 64 without effect
   uint32_t retires_per_cycle = 1;  // Vulkan-Sim gives back one warp a cycle
-  // Choice: which hit a ray with TerminateOnFirstHit gets depends on the order of traversal; the nearest does
-  // not, so that no policy changes a picture. Hardware ends at the first one found, and visits up to a fifth
-  // fewer nodes.
+  // Choice: a ray with TerminateOnFirstHit takes the nearest hit. Which hit is found first depends on the
+  // order of traversal; the nearest does not, so no policy changes a picture. Hardware ends at the first hit
+  // found, and visits up to a fifth fewer nodes.
   bool nearest_first_hit = true;
   bool retest = true;         // Choice: stacks keep distances; Vulkan-Sim's does not
   bool result_store = false;  // Choice: results go to registers; Vulkan-Sim stores 32 B

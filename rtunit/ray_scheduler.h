@@ -15,14 +15,15 @@ namespace glint::rt {
 struct WarpView {
   bool ready = false;  // Some lane wants a node.
   uint32_t lanes_wanting = 0;
-  uint64_t age = 0;  // order of arrival: smaller is older
+  uint64_t age = 0;  // order of arrival: the older warp has the smaller number
   Cycle arrived = 0;
 };
 
 // Contract (tests/contract/rt_ray_scheduler_test.cpp):
 //  - pick() returns the index of a ready warp, or kNone only when none is ready.
 //  - The choice depends on the arguments and the policy's own state only.
-//  - A ready warp is chosen at last when the others leave: no warp is skipped for ever while none is older.
+//  - No ready warp is skipped for ever while no older warp is ready: it is chosen at last when the others
+//    leave.
 class RayScheduler {
  public:
   static constexpr PolicyKind kKind{"rt.scheduler", "rtunit/schedulers"};

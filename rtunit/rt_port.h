@@ -29,11 +29,11 @@ class RtPort {
   virtual std::optional<uint32_t> pop_completion(Cycle now) = 0;
   // Advances to `now`. The core calls it in every cycle that it does not skip.
   virtual void tick(Cycle now) = 0;
-  // Returns the earliest cycle after `now` in which tick() can do anything without new input; kNever when
-  // idle.
+  // Returns the earliest cycle after `now` in which tick() can do anything without new input, or kNever when
+  // the unit is idle.
   virtual Cycle next_event(Cycle now) const = 0;
-  // Returns lines on the warps inside and what they wait for, for a machine that is stuck; "" when the unit
-  // is empty.
+  // Returns lines that say which warps are inside and what they wait for, for a machine that is stuck. The
+  // text is empty when the unit is.
   virtual std::string describe() const { return {}; }
 };
 

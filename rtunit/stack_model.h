@@ -18,14 +18,14 @@ struct StackWork {
   uint16_t spills = 0;    // sectors to write
   uint16_t fills = 0;     // sectors to read, one after the other
   uint16_t replays = 0;   // nodes to visit again: RayPath::node from the root on
-  uint16_t replayed = 0;  // how many of these the lane has asked for
+  uint16_t replayed = 0;  // number of these nodes that the lane has asked for
 };
 
 // Says where stacks lie in memory. The layout is that of candidate tables
 // (rtunit/traversal/candidate_table.h), so that lanes share lines.
 struct StackLayout {
   Address base = 0;   // physical, of this core
-  uint32_t rows = 0;  // sectors a ray; 0: stacks never leave the chip
+  uint32_t rows = 0;  // sectors per ray; 0: stacks never leave the chip
   uint64_t bytes_per_warp() const { return uint64_t{rows} * kLanes * 32; }
   Address sector(uint32_t warp_slot, uint32_t row, int lane) const {
     return base + ((uint64_t{warp_slot} * rows + row) * kLanes + uint64_t(lane)) * 32;

@@ -1,5 +1,5 @@
-// Any-hit mode `deferred`: the traversal runs on and gathers candidates in a table. Then shaders run over the
-// table, one shader at a time.
+// Implements the any-hit mode `deferred`: the traversal runs on and gathers candidates in a table. Then
+// shaders run over the table, one shader at a time.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <bit>
@@ -20,14 +20,14 @@ struct Group {
   std::array<uint8_t, kLanes> row{};
 };
 
-// The nearest comes first: when it is committed, it makes the most others drop. Of equals the one comes first
-// that would win (traversal/hit_rules.h).
+// The nearest candidate comes first, because committing it drops the most others. Among candidates at the
+// same distance, the one that wins as a hit comes first (traversal/hit_rules.h).
 bool comes_before(const Hit& a, const Hit& b) {
   return std::tie(a.t, a.instance, a.geometry, a.primitive) <
          std::tie(b.t, b.instance, b.geometry, b.primitive);
 }
 
-// Candidates of more shaders than this at once wait for a later round.
+// A round considers this many shaders. Candidates of further shaders wait for a later round.
 constexpr size_t kMaxGroups = 64;
 struct Groups {
   std::array<Group, kMaxGroups> group;
@@ -47,7 +47,7 @@ struct Groups {
 };
 
 // Prefers the shader that the most lanes can run together. Vulkan-Sim's function-call coalescing makes as
-// many calls: for each shader, as many as the lane with the most candidates for it has.
+// many calls: it calls each shader as often as the lane with the most candidates for it needs.
 bool is_better(const Group& a, const Group& b) {
   if ((a.shader == AnyHitMode::kNoShader) != (b.shader == AnyHitMode::kNoShader))
     return b.shader == AnyHitMode::kNoShader;
@@ -88,7 +88,7 @@ class Deferred final : public AnyHitMode {
     for (size_t i = 1; i < groups.count; ++i)
       if (is_better(groups.group[i], *best)) best = &groups.group[i];
     for_each_lane(best->lanes, [&](int lane) { rt::present(rays[lane], best->row[size_t(lane)]); });
-    // Candidates without a shader run beside the chosen one at no cost.
+    // Candidates without a shader are decided beside the chosen shader at no cost.
     for (size_t i = 0; i < groups.count; ++i) {
       const Group& group = groups.group[i];
       if (group.shader != kNoShader || &group == best) continue;

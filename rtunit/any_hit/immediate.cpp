@@ -1,5 +1,5 @@
-// Any-hit mode `immediate`: a ray stops at each candidate, the shader runs, and the ray goes on, shorter when
-// the candidate was accepted.
+// Implements the any-hit mode `immediate`: a ray stops at each candidate, the shader runs, and the ray goes
+// on. It is shorter when the candidate was accepted.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,5 +1,5 @@
-// Child order `first_internal`: the ray goes down the first internal child and visits the others from the
-// last to the first, as in Vulkan-Sim 2.0.
+// Implements the child order `first_internal`: the ray goes down the first internal child and visits the
+// others from the last to the first, as in Vulkan-Sim 2.0.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

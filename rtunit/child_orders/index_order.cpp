@@ -1,5 +1,5 @@
-// Child order `index_order`: the ray visits the children as they lie in the node, for a unit that cannot
-// sort.
+// Implements the child order `index_order`: the ray visits the children as they lie in the node, for a unit
+// that cannot sort.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

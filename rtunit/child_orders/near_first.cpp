@@ -1,4 +1,5 @@
-// Child order `near_first`: the ray visits the children by distance, as in hardware that sorts its hits.
+// Implements the child order `near_first`: the ray visits the children by distance, as in hardware that sorts
+// its hits.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

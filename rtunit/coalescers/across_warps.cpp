@@ -1,4 +1,5 @@
-// Coalescing `across_warps`: all lanes in the unit that wait to ask for the same node share its fetch.
+// Implements the coalescer `across_warps`: all lanes in the unit that wait to ask for the same node share its
+// fetch.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,4 @@
-// Coalescing `each_lane`: every lane fetches for itself.
+// Implements the coalescer `each_lane`: every lane fetches for itself.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,5 +1,5 @@
-// Coalescing `within_warp`: lanes of one warp that want the same node share its fetch, as in the published
-// simulators.
+// Implements the coalescer `within_warp`: lanes of one warp that want the same node share its fetch, as in
+// the published simulators.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

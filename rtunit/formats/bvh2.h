@@ -1,4 +1,5 @@
-// Node format `bvh2`: 64-byte nodes of two boxes in single precision, as software traversal on GPUs has them.
+// Defines the node format `bvh2`: 64-byte nodes of two boxes in single precision, as software traversal on
+// GPUs has them.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "rtunit/formats/float_boxes.h"

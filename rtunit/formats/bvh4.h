@@ -1,4 +1,5 @@
-// Node format `bvh4`: 128-byte nodes of four boxes in single precision, as large as AMD's RDNA 2 box nodes.
+// Defines the node format `bvh4`: 128-byte nodes of four boxes in single precision, as large as AMD's RDNA 2
+// box nodes.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "rtunit/formats/float_boxes.h"

@@ -1,5 +1,5 @@
-// Node format `bvh6`: 64-byte nodes of six boxes in 8 bits a plane, as Intel's hardware and the published
-// simulators have it.
+// Defines the node format `bvh6`: 64-byte nodes of six boxes in 8 bits a plane, as Intel's hardware and the
+// published simulators have it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,7 +14,7 @@ struct Bvh6 : QuantisedBoxes<Bvh6> {
 
   struct Node {
     std::array<float, 3> origin{};
-    uint32_t first_block = 0;  // of child 0; the others follow without gaps
+    uint32_t first_block = 0;  // block of child 0; the others follow without gaps
     std::array<uint8_t, 3> exponent{};
     uint8_t num_children = 0;
     uint8_t low[3][kWidth]{}, high[3][kWidth]{};
@@ -24,7 +24,8 @@ struct Bvh6 : QuantisedBoxes<Bvh6> {
   static constexpr uint32_t kNodeBytes = sizeof(Node);
   static_assert(kNodeBytes == 64);
 
-  // Internal nodes are as large as leaves, and siblings follow each other without gaps.
+  // Returns the references of a node's children, one after the other. Internal nodes are as large as leaves,
+  // and siblings follow each other without gaps.
   class References {
    public:
     explicit References(const Node& node) : node_(node), block_(node.first_block) {}

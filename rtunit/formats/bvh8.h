@@ -1,4 +1,5 @@
-// Node format `bvh8`: 80-byte nodes of eight boxes in 8 bits a plane (Ylitie, Karras, Laine 2017).
+// Defines the node format `bvh8`: 80-byte nodes of eight boxes in 8 bits a plane (Ylitie, Karras, Laine
+// 2017).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -11,7 +12,7 @@ namespace glint::rt {
 // Figure 2 of "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs" gives the layout: 12
 // B for the origin, 3 B for exponents, 1 B, two base indices of 4 B, 8 B about the children and 48 B for
 // planes. Nodes and leaves lie in arrays of their own. Model: children are visited by distance, as in every
-// format. The paper's order by octant is missing, so the byte behind the exponents counts the children, and
+// format, and not in the paper's order by octant. So the byte behind the exponents counts the children, and
 // the kinds say which are nodes.
 struct Bvh8 : QuantisedBoxes<Bvh8> {
   static constexpr int kWidth = 8;

@@ -22,7 +22,7 @@ struct FloatBoxes {
 
   struct Node {
     float low[3][kWidth]{}, high[3][kWidth]{};
-    NodeRef child[kWidth]{};  // The used ones come first.
+    NodeRef child[kWidth]{};  // The children that exist come first.
     uint32_t pad[kWidth == 2 ? 2 : 4]{};
   };
   static constexpr uint32_t kNodeBytes = sizeof(Node);

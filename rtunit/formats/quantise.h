@@ -1,5 +1,5 @@
-// Writes boxes in 8 bits a plane. On each axis a plane is a number of steps from an origin, and a step is a
-// power of two (Ylitie et al. 2017, section 3.1).
+// Writes boxes in 8 bits a plane. The number of a plane counts steps from the origin of its axis, and a step
+// is a power of two (Ylitie et al. 2017, section 3.1).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace glint::rt {
 
-// Turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), rounded to float
-// once.
+// Turns bytes into planes: plane q lies at origin[axis] + q * 2^(exponent[axis] - 127), and the sum is
+// rounded to float once.
 struct Grid {
   std::array<float, 3> origin{};
   std::array<uint8_t, 3> exponent{};  // biased as in a float, 1..254
@@ -24,13 +24,12 @@ struct Grid {
   static float plane(float origin, uint8_t q, float step) { return origin + float(q) * step; }
 };
 
-// The planes of a node's children on one axis.
+// Holds the planes of a node's children on one axis.
 struct QuantisedPlanes {
   std::span<uint8_t> low, high;
 };
 
-// Quantises with the grid's origin and exponent as they are. Returns false when a plane does not fit in 8
-// bits.
+// Quantises with the grid's present origin and exponent. Returns false when a plane does not fit in 8 bits.
 inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const Grid& grid,
                                QuantisedPlanes planes) {
   const float origin = grid.origin[axis], step = grid.step(axis);
@@ -40,7 +39,7 @@ inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const
     const double high = std::ceil((double(box.high[axis]) - origin) / step);
     if (high > 255) return false;
     int q_low = int(low), q_high = int(high);
-    // The decoded plane is rounded to float, so it moves outwards until it is not inside the box.
+    // The decoded plane is rounded to float. It moves outwards until it does not lie inside the box.
     while (q_low > 0 && Grid::plane(origin, uint8_t(q_low), step) > box.low[axis]) --q_low;
     while (q_high <= 255 && Grid::plane(origin, uint8_t(q_high), step) < box.high[axis]) ++q_high;
     if (q_high > 255) return false;
@@ -50,7 +49,8 @@ inline bool quantise_with_step(std::span<const Bounds> boxes, size_t axis, const
   return true;
 }
 
-// Sets one axis of `grid` to the finest steps that hold all boxes, and their planes, rounded outwards.
+// Gives one axis of `grid` the finest steps that hold all boxes, and sets the planes of the boxes, rounded
+// outwards.
 inline void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, QuantisedPlanes planes) {
   float low = 0, high = 0;
   for (size_t i = 0; i < boxes.size(); ++i) {

@@ -15,12 +15,12 @@
 
 namespace glint::rt {
 
-// A format has kWidth; Node with origin, exponent, num_children, kind, low and high; and References, whose
-// next(i) returns the reference of child i and is called in order.
+// A format has kWidth; a Node with origin, exponent, num_children, kind, low and high; and References, whose
+// next(i) returns the reference of child i and is called in the order of the children.
 template <class Format>
 struct QuantisedBoxes {
-  // Fills two SIMD registers of single precision. Planes of missing children are zeros, and nobody looks at
-  // what they give.
+  // This many planes fill two SIMD registers of single precision. Planes of missing children are zeros, and
+  // nobody looks at what they give.
   static constexpr int kPlanes = 8;
 
   // Writes the children that the ray enters in [t_min, t_max], in index order. Returns their number and
@@ -72,7 +72,7 @@ struct QuantisedBoxes {
     return node;
   }
 
-  // Returns the bytes of the whole structure; link(node, children) sets a node's references.
+  // Returns the bytes of the whole structure. It calls link(node, children) to set a node's references.
   template <class Link>
   static std::vector<std::byte> encode(const BuildTree& tree, const Layout& layout, Link link) {
     std::vector<std::byte> out = bytes_with_leaves(tree, layout);

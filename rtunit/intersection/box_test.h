@@ -1,17 +1,18 @@
-// The ray-box test. Its slabs are padded, so that rounding never loses a box that the exact ray touches.
+// Tests a ray against a box. The slabs are padded, so that rounding never loses a box that the exact ray
+// touches.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace glint::rt {
 
 // Each slab distance carries an error of at most 1.5 ulp, and the far one must be widened by 2 ulp (Ize 2013,
-// "Robust BVH Ray Traversal"). Choice: both ends are widened by 8 ulp, so that a box is never entered later
-// than its own triangles are hit by the sheared test, whose distance rounds on its own. Ties at equal t then
-// do not depend on the order of visits.
+// "Robust BVH Ray Traversal"). Choice: both ends are widened by 8 ulp. The sheared triangle test rounds its
+// distance on its own, and with this margin a box is never entered later than its own triangles are hit. Ties
+// at equal t then do not depend on the order of visits.
 inline constexpr float kSlabShrink = 1 - 8 * 0x1p-24f, kSlabGrow = 1 + 8 * 0x1p-23f;
 
-// Clips the interval to one slab, given by the planes that the ray meets first and last. Not-a-number (0 *
-// inf: the ray lies in the plane) leaves the interval as it is.
+// Clips the interval to one slab, given by the planes that the ray meets first and last. A distance that is
+// not a number (0 * inf: the ray lies in the plane) leaves the interval as it is.
 inline void clip_slab(float near_plane, float far_plane, float origin, float inverse, float& t_near,
                       float& t_far) {
   const float enter = (near_plane - origin) * inverse;
@@ -20,7 +21,7 @@ inline void clip_slab(float near_plane, float far_plane, float origin, float inv
   t_far = leave < t_far ? leave : t_far;
 }
 
-// Widen the ends of an interval outwards whatever their signs.
+// These two widen the ends of an interval outwards, whatever their signs.
 inline float widen_near(float t) {
   return t * (t > 0 ? kSlabShrink : kSlabGrow);
 }

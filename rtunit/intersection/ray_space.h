@@ -7,7 +7,7 @@
 
 namespace glint::rt {
 
-// The space is that of the structure being walked: the world, or the object space of an instance.
+// The ray stands in the space of the structure that it walks: the world, or the object space of an instance.
 struct RaySpace {
   std::array<float, 3> origin{}, direction{}, inverse_direction{};
   std::array<float, 3> shear{};          // Woop et al. 2013: Sx, Sy, Sz

@@ -1,5 +1,5 @@
-// The ray-triangle test. Edges and vertices are watertight (Woop, Benthin, Wald 2013, JCGT 2-1); the distance
-// is that of the plane.
+// Tests a ray against a triangle. The edge test is watertight (Woop, Benthin, Wald 2013, JCGT 2-1); the
+// distance is that of the triangle's plane.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
@@ -33,24 +33,23 @@ inline void enter_space(RaySpace& space, const std::array<float, 3>& origin,
   space.shear = {direction[kx] / direction[kz], direction[ky] / direction[kz], 1 / direction[kz]};
 }
 
-// Returns a component of the plane's normal, the cross product of two edges. Of the two pairs of edges it
-// takes the one whose subtrahend is smaller, since less is cancelled then; std::fma makes the last rounding
-// exact.
+// Returns a component of the plane's normal, the cross product of two edges. It takes the pair of edges whose
+// subtrahend is smaller, since less is cancelled then; std::fma makes the last rounding exact.
 inline float normal_component(float a1, float a2, float b1, float b2, float c1, float c2) {
   const float ab = a2 * b1, bc = b2 * c1;
   return std::fabs(ab) < std::fabs(bc) ? std::fma(a1, b2, -ab) : std::fma(b1, c2, -bc);
 }
 
 // Returns the distance of the plane through three corners, in lengths of the direction: t = (v0 . N) (1 / (N
-// . D)), with corners relative to the origin. It returns `weighted`, the distance averaged with the edge
-// test's weights, where N . D vanishes and where the plane's distance leaves the corners' own depths [low,
-// high] along the axis kz by more than 2^-21, half of what boxes are widened by: the normal of a sliver is
-// noise, and a hit must stay near its box. Choice: it multiplies with a reciprocal and does not divide, and
-// it fuses where std::fma stands. The result has nearly always the bits of Embree's robust test, whose
-// grazing self-hits follow the last bit. std::fma rounds once on every machine. Measured against the exact
-// value over 64 x 64 x 2 primary rays of SHIP, BUNNY and REF, the mean error is 0.77, 0.54, 0.51 ulp
-// (averaged weights: 0.76, 0.75, 0.75) and the largest 5.3, 3.4, 2.2 ulp (7.3, 5.2, 4.1). Double precision
-// would give 0.25 ulp, but other self-hits.
+// . D)), with corners relative to the origin. The normal of a sliver is noise, and a hit must stay near its
+// box. So the function returns `weighted`, the distance averaged with the edge test's weights, in two cases:
+// where N . D vanishes, and where the plane's distance leaves the corners' own depths [low, high] along the
+// axis kz by more than 2^-21, half of what boxes are widened by. Choice: it multiplies with a reciprocal and
+// does not divide, and it fuses where std::fma stands. The result has nearly always the bits of Embree's
+// robust test, whose grazing self-hits depend on the last bit. std::fma rounds once on every machine.
+// Measured against the exact value over 64 x 64 x 2 primary rays of SHIP, BUNNY and REF, the mean error is
+// 0.77, 0.54, 0.51 ulp (averaged weights: 0.76, 0.75, 0.75) and the largest 5.3, 3.4, 2.2 ulp (7.3, 5.2,
+// 4.1). Double precision would give 0.25 ulp, but other self-hits.
 inline float plane_distance(const std::array<float, 3>& o, const std::array<float, 3>& d,
                             const std::array<float, 3>& p0, const std::array<float, 3>& p1,
                             const std::array<float, 3>& p2, float low, float high, float weighted) {
@@ -73,7 +72,8 @@ inline float plane_distance(const std::array<float, 3>& o, const std::array<floa
 }
 
 // Tests the line of the ray; the caller checks the interval. Returns false for degenerate triangles and for
-// not-a-number. The edge test alone decides whether there is a hit; the plane only says where.
+// coordinates that are not a number. The edge test alone decides whether there is a hit; the plane only says
+// where.
 inline bool intersect_triangle(const RaySpace& space, const std::array<float, 3>& p0,
                                const std::array<float, 3>& p1, const std::array<float, 3>& p2,
                                TriangleHit& hit) {
@@ -84,7 +84,8 @@ inline bool intersect_triangle(const RaySpace& space, const std::array<float, 3>
   const float ax = (p0[kx] - o[kx]) - sx * az, ay = (p0[ky] - o[ky]) - sy * az;
   const float bx = (p1[kx] - o[kx]) - sx * bz, by = (p1[ky] - o[ky]) - sy * bz;
   const float cx = (p2[kx] - o[kx]) - sx * cz, cy = (p2[ky] - o[ky]) - sy * cz;
-  // These are scaled barycentric coordinates. Exactly on an edge their sign needs the exact product.
+  // These are scaled barycentric coordinates. Where the line meets an edge exactly, only the exact product
+  // gives their sign.
   float u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
   if (u == 0 || v == 0 || w == 0) [[unlikely]] {
     u = float(double(cx) * double(by) - double(cy) * double(bx));

@@ -1,5 +1,5 @@
-// Ray scheduler `oldest_first`: the warp that entered the RT unit first sends first, as in the published
-// simulators.
+// Implements the ray scheduler `oldest_first`: the warp that entered the RT unit first sends first, as in the
+// published simulators.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

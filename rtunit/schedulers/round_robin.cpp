@@ -1,4 +1,4 @@
-// Ray scheduler `round_robin`: the warps in the unit take turns at the request port.
+// Implements the ray scheduler `round_robin`: the warps in the unit take turns at the request port.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,4 @@
-// Sends single stores of hits, and keeps their warps until the last store is acknowledged.
+// Sends a store for every single hit, and keeps the warp until its last store is acknowledged.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/shortcuts/hit_stores.h"
 
@@ -33,7 +33,7 @@ void HitStores::test_ended(uint32_t slot, int lane) {
   in_test = 0;
 }
 
-// Model: which lane's hit is sent makes no difference. The warp that has been in the unit longest sends
+// Model: it makes no difference which lane's hit is sent. The warp that has been in the unit longest sends
 // first.
 bool HitStores::send(Cycle now) {
   uint32_t oldest = ~0u;

@@ -14,7 +14,7 @@ namespace glint::rt {
 
 class HitStores final : public RequestSource, public WalkHook, public WarpExit {
  public:
-  // `records` is the physical, line-aligned address of kBytes. `has_tables`: candidates of the deferred
+  // `records` is the physical, line-aligned address of kBytes. With `has_tables`, candidates of the deferred
   // any-hit mode are stored too.
   HitStores(uint32_t latency, mem::L1Port& l1, WarpBuffer& buffer, RtStats& stats, Address records,
             bool has_tables);
@@ -33,13 +33,13 @@ class HitStores final : public RequestSource, public WalkHook, public WarpExit {
 
  private:
   struct Stores {
-    std::array<uint8_t, kLanes> in_test{};  // of the lane's test, to be sent when it ends
+    std::array<uint8_t, kLanes> in_test{};  // stores of the lane's present test, sent when it ends
     uint32_t unsent = 0;
     Cycle last_sent = 0;
     bool is_waiting = false;  // The warp may leave when its last store is acknowledged.
   };
 
-  const uint32_t latency_;  // from a store to its acknowledgement
+  const uint32_t latency_;  // cycles from a store to its acknowledgement
   mem::L1Port& l1_;
   WarpBuffer& buffer_;
   RtStats& stats_;

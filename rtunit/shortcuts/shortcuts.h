@@ -10,15 +10,15 @@
 namespace glint::rt {
 
 // All are off by default, and none of them changes a hit. Source: Vulkan-Sim 2.0.0 (rt_unit in shader.cc,
-// VulkanRayTracing::traceRay). Other traits of it are ordinary parameters: tests without limits are `units`
-// of the pipelines in rt::Params, its order of children is rt.child_order = "first_internal", and its visits
-// of nodes behind the hit are rt.retest = false.
+// VulkanRayTracing::traceRay). Its other traits are ordinary parameters: tests without limits are `units` of
+// the pipelines in rt::Params, its order of children is rt.child_order = "first_internal", and its visits of
+// nodes behind the hit are rt.retest = false.
 struct Shortcuts {
   bool same_cycle_hits = false;
   bool fetch_headers = false;
   bool fetch_descriptors = false;
   bool store_each_hit = false;
-  uint32_t store_latency = 0;                           // 0: a write is over when the L1 has taken it.
+  uint32_t store_latency = 0;                           // 0: a write ends when the L1 has taken it.
   uint32_t header_latency = 4, descriptor_latency = 4;  // -gpgpu_rt_intersection_latency, entries 0 and 3
 
   static constexpr auto params() {

@@ -25,7 +25,8 @@ class SplitReads final : public WalkHook {
   void visited(const Visit& visit) override;
 
  private:
-  // Holds the lanes of a slot whose next read is a header, and those whose leaf's descriptor has been read.
+  // Holds the lanes of a slot whose next read is a header, and the lanes whose leaf has had its descriptor
+  // read.
   struct Lanes {
     LaneMask header = 0, described = 0;
   };

@@ -1,4 +1,4 @@
-// Stack model `full`: every entry of a ray is on chip.
+// Implements the stack model `full`: every entry of a ray is on chip.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

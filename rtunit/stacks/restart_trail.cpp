@@ -1,5 +1,5 @@
-// Stack model `restart_trail`: a short stack forgets its oldest entries, and the ray finds them again from
-// the root.
+// Implements the stack model `restart_trail`: a short stack forgets its oldest entries, and the ray finds
+// them again from the root.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -10,8 +10,8 @@ namespace glint::rt {
 namespace {
 
 // Sources: Laine 2010, "Restart Trail for Stackless BVH Traversal"; Vaidyanathan et al. 2019 for wide nodes.
-// A few bits a level say which children are done. A ray whose stack is empty goes down from the root again,
-// past what is done, and its stack holds the entries that it meets on the way. Model: entries that have been
+// A few bits per level say which children are done. A ray whose stack is empty goes down from the root again,
+// past what is done, and its stack keeps the entries that it meets on the way. Model: entries that have been
 // cut off cost one restart, however many they are; the trail needs no memory.
 class RestartTrail final : public StackModel {
  public:
@@ -34,7 +34,7 @@ class RestartTrail final : public StackModel {
     StackWork work;
     if (!state.path || has_left_stack(state)) forgotten = 0;
     if (forgotten > 0 && state.stack_size <= forgotten) {
-      // The newest of these entries is sought.
+      // The ray goes down again to find the newest of these entries.
       const int sought = state.stack_size > 0 ? state.stack_size : forgotten;
       work.replays = uint16_t(state.path->parent[size_t(sought) - 1] + 1);
       forgotten = 0;

@@ -1,5 +1,5 @@
-// Stack model `short_stack`: the top of the stack is on chip and the rest in local memory. Entries move a
-// sector at a time.
+// Implements the stack model `short_stack`: the top of the stack is on chip and the rest in local memory.
+// Entries move a sector at a time.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -9,9 +9,9 @@
 namespace glint::rt {
 namespace {
 
-// Model: entries below what a shader has cut off are read and dropped, as they must be in hardware that keeps
-// distances with them. Entries that are on chip when a shader is called stay there with the rest of the ray's
-// state.
+// Model: when a shader has cut off entries, those that lie in memory are read and dropped, as they must be in
+// hardware that keeps distances with them. Entries that are on chip when a shader is called stay there with
+// the rest of the ray's state.
 class ShortStack final : public StackModel {
  public:
   static constexpr std::string_view kName = "short_stack";

@@ -21,7 +21,7 @@ using Triangle = std::array<Vec3, 3>;
 
 struct Leaves {
   std::vector<BuildItem> items;
-  std::vector<uint32_t> stack_need;  // of what hangs below the leaf; one an item
+  std::vector<uint32_t> stack_need;  // stack entries needed below each leaf, by item
   std::vector<std::byte> bytes;
   uint64_t primitives = 0;
   template <class Leaf>
@@ -69,7 +69,7 @@ uint64_t num_triangles(const Geometry& g) {
   return (g.indices.empty() ? (g.positions.size() + g.stride - 12) / g.stride : g.indices.size()) / 3;
 }
 
-// Returns the corners of a triangle, or nothing when it is inactive.
+// Returns the corners of a triangle, or nothing when the triangle is inactive.
 std::optional<Triangle> triangle_at(const Geometry& g, uint64_t index) {
   Triangle out;
   for (size_t corner = 0; corner < 3; ++corner) {
@@ -206,8 +206,8 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves& leaves, con
   return {info, std::move(bytes)};
 }
 
-// Returns the inverse of a 3x4 affine transform, computed in double and rounded once; nothing when it has
-// none.
+// Returns the inverse of a 3x4 affine transform, computed in double and rounded once, or nothing when there
+// is no inverse.
 std::optional<std::array<float, 12>> inverse(const std::array<float, 12>& m) {
   const auto at = [&](int r, int c) { return double(m[size_t(4 * (r % 3) + c % 3)]); };
   double cofactor[3][3];
@@ -230,8 +230,8 @@ std::optional<std::array<float, 12>> inverse(const std::array<float, 12>& m) {
   return out;
 }
 
-// Returns the world box of a transformed box, padded by what the rounding of the object-space ray may move
-// it. Without a transform there is no pad: it could cost a whole step of a node's planes.
+// Returns the world box of a transformed box. It is padded by the most that rounding the ray into object
+// space may move it. Without a transform there is no pad, which could cost a whole step of a node's planes.
 Bounds world_bounds(const std::array<float, 12>& m, const Bounds& box) {
   if (m == kIdentity) return box;
   constexpr double kPad = 8 * 0x1p-24;

@@ -17,14 +17,14 @@ namespace glint::rt {
 
 inline constexpr std::array<float, 12> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
 
-// Holds triangles or AABBs. Without indices, three positions are a triangle. The spans are read only during
-// build_bottom(). Triangles with a not-a-number corner are inactive (Vulkan); so are those of no area, which
-// no ray can hit. Inactive triangles keep their primitive index.
+// Holds triangles or AABBs. Without indices, each three positions are a triangle. The spans are read only
+// during build_bottom(). Triangles with a corner that is not a number are inactive (Vulkan), and so are
+// triangles without area, which no ray can hit. Inactive triangles keep their primitive index.
 struct Geometry {
   std::span<const std::byte> positions;  // float3 at multiples of `stride` bytes
   uint32_t stride = 12;
   std::span<const uint32_t> indices;
-  std::span<const Bounds> aabbs;                // not empty: an AABB geometry
+  std::span<const Bounds> aabbs;                // An AABB geometry has some, a triangle geometry none.
   std::array<float, 12> transform = kIdentity;  // applied to the triangles at build
   bool opaque = true;
   bool no_duplicate_any_hit = false;  // It always holds here: every primitive lies in one leaf.
@@ -56,19 +56,19 @@ struct BuildOptions {
 };
 
 struct StructureInfo {
-  Address address = 0;  // virtual, of the header: what descriptors and rays hold
+  Address address = 0;  // virtual address of the header, which descriptors and rays hold
   Bounds bounds{};
   uint64_t bytes = 0;
   FormatId format = FormatId::Bvh6;
-  uint32_t nodes = 0;  // internal
+  uint32_t nodes = 0;  // internal nodes
   uint32_t leaves = 0;
-  uint32_t depth = 0;       // internal nodes from root to deepest leaf
+  uint32_t depth = 0;       // number of internal nodes from the root to the deepest leaf
   uint64_t primitives = 0;  // active triangles and AABBs, or active instances
   uint32_t stack_need = 0;  // stack entries that the worst ray needs, instances' bottom levels included
 };
 
-// Holds a bottom level as bytes that may lie anywhere. They are all that is left of its geometry.
-// `info.address` is not set.
+// Holds a bottom level as bytes that may lie anywhere. Its geometry is no longer needed. `info.address` is
+// not set.
 struct EncodedBottom {
   StructureInfo info;
   std::vector<std::byte> bytes;

@@ -36,7 +36,7 @@ void set_children(void* node, void** children, unsigned count, void*) {
     static_cast<RawNode*>(node)->child[i] = static_cast<RawNode*>(children[i]);
 }
 void set_bounds(void*, const RTCBounds**, unsigned, void*) {
-}  // recomputed from the leaves below
+}  // } // recomputed from the leaves below
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count,
                   void*) {
   GLINT_CHECK_EQ(count, size_t{1});

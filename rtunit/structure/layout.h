@@ -12,8 +12,8 @@
 namespace glint::rt {
 
 struct Layout {
-  std::vector<uint32_t> block;  // of each node of the tree, from the header
-  uint64_t bytes = 0;           // of the structure
+  std::vector<uint32_t> block;  // block of each node of the tree, counted from the header
+  uint64_t bytes = 0;           // bytes of the structure
 };
 
 inline std::span<const uint32_t> children_of(const BuildTree& tree, const BuildTree::Node& node) {
@@ -43,8 +43,8 @@ void depth_first(const BuildTree& tree, Visit visit) {
   }
 }
 
-// Lays nodes out depth first. The children of a node follow each other without gaps, leaves among internal
-// nodes.
+// Lays nodes out depth first. The children of a node follow each other without gaps, and leaves lie among
+// internal nodes.
 inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), sizeof(StructureHeader) + node_bytes};
   out.block[0] = kRootBlock;
@@ -56,7 +56,7 @@ inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
   return out;
 }
 
-// Lays internal nodes out depth first and packed, and the leaves behind them at multiples of their own 64
+// Lays internal nodes out depth first and packed. The leaves lie behind them at multiples of their own 64
 // bytes. Internal children of a node follow each other without gaps, and so do its leaves.
 inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
   Layout out{std::vector<uint32_t>(tree.nodes.size()), 0};

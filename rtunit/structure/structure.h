@@ -8,13 +8,13 @@
 
 namespace glint::rt {
 
-// Everything in a structure lies at multiples of a block from its header. Block 0 is the header itself;
-// behind it lies the root, which is always an internal node.
+// Everything in a structure lies at a multiple of a block from its header. Block 0 is the header itself.
+// Behind it lies the root, which is always an internal node.
 inline constexpr uint32_t kBlockBytes = 16;
 inline constexpr uint32_t kRootBlock = 4;
-inline constexpr uint32_t kLeafBytes = 64;  // of a leaf that is no instance
+inline constexpr uint32_t kLeafBytes = 64;  // bytes of a leaf that is no instance
 
-// TriangleSecond stands only on stacks: it is the second triangle of a leaf whose first one waited for an
+// TriangleSecond occurs only on stacks: it is the second triangle of a leaf whose first one waited for an
 // any-hit shader.
 enum class NodeKind : uint8_t { Internal, Instance, Triangle, Procedural, TriangleSecond };
 
@@ -48,7 +48,7 @@ struct StructureHeader {
   static constexpr uint32_t kMagic = 0x53424c47;  // "GLBS"
   uint32_t magic = kMagic;
   uint8_t format = 0, level = 0, pad[2]{};  // level: 0 bottom, 1 top
-  Bounds bounds;                            // of the level's own space; empty (low > high) without primitives
+  Bounds bounds;                            // in the level's own space; empty (low > high) without primitives
   uint32_t num_primitives = 0;              // active triangles and boxes, or active instances
   uint32_t stack_need = 0;                  // entries that the worst ray needs in this structure
   uint64_t bytes = 0;
@@ -64,7 +64,7 @@ struct TriangleLeaf {
   uint32_t geometry = 0;
   uint8_t count = 1;
   uint8_t opaque = 0;
-  uint8_t second = 0;  // 2 bits a corner: which vertex
+  uint8_t second = 0;  // 2 bits per corner: the number of its vertex
   uint8_t pad = 0;
 };
 static_assert(sizeof(TriangleLeaf) == kLeafBytes);

@@ -1,4 +1,4 @@
-// Holds the candidates that a ray has met and that no shader has decided. They are the ray's column of a
+// Holds the candidates that a ray has met and that no shader has decided yet. They are the ray's column of a
 // warp's table in the deferred any-hit mode.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -38,7 +38,7 @@ struct CandidateTable {
   std::vector<Candidate> row;  // The owner of the table sizes it. An entry stays in its row.
   uint32_t used = 0;           // bit r: row r holds a candidate
   uint32_t unwritten = 0;      // bit r: the RT unit has not sent it to memory yet
-  // These count since clear().
+  // These counts begin at clear().
   uint32_t gathered = 0;   // candidates put in
   uint32_t dropped = 0;    // taken out undecided, because the ray had ended before them
   uint32_t overflows = 0;  // times the traversal stopped because the table was full

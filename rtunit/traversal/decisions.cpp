@@ -9,7 +9,7 @@ using namespace rules;
 
 namespace {
 
-// A candidate has been decided: the next one of the table follows, or the next node.
+// Goes on after a candidate has been decided: with the next one of the table, or with the next node.
 void go_on(RayState& s) {
   if (s.table && s.table->used) {
     drop_beaten(s);
@@ -22,7 +22,7 @@ void go_on(RayState& s) {
   if (!s.rules.in_code) settle(s);
 }
 
-// The accepted candidate becomes the hit; the ray goes on, or ends when it asked for any hit.
+// Makes the accepted candidate the hit. The ray goes on, or ends when it asked for any hit.
 void commit(RayState& s, bool end) {
   s.committed = s.candidate;
   end = end || ends_at_first_hit(s);
@@ -62,7 +62,7 @@ void ignore_candidate(RayState& s) {
 
 Report report(RayState& s, float t, uint32_t kind) {
   s.report_accepted = false;
-  // For shaders' own hits the interval includes both ends (Vulkan, "Ray Intersection Candidate
+  // For hits that shaders report, the interval includes both ends (Vulkan, "Ray Intersection Candidate
   // Determination").
   const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
   // The first accepted report ends the intersection shader, though a nearer primitive may still be looked

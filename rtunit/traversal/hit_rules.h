@@ -1,4 +1,4 @@
-// Decides which hit counts and when a traversal is over, for visits and for shaders' answers.
+// Decides which hit counts and when a traversal ends, for visits and for shaders' answers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <bit>
@@ -33,8 +33,8 @@ inline bool wins(const RayState& s, float t, uint32_t instance, uint32_t geometr
              std::tuple(s.committed.instance, s.committed.geometry, s.committed.primitive);
 }
 
-// Takes out of the table what cannot become the hit any more: the ray has become shorter since it was
-// gathered.
+// Takes candidates out of the table that can no longer become the hit, because the ray has become shorter
+// since they were gathered.
 inline void drop_beaten(RayState& s) {
   for (uint32_t rest = s.table->used; rest; rest &= rest - 1) {
     const auto row = uint32_t(std::countr_zero(rest));
@@ -58,7 +58,7 @@ inline void end_traversal(RayState& s) {
 }
 
 // Drops entries that cannot matter any more and leaves a finished bottom level, so that the top entry is the
-// next node. An entry at exactly the committed distance stays: a tie may be decided for its primitive.
+// next node. An entry at exactly the committed distance stays, because its primitive may win the tie.
 inline void settle(RayState& s) {
   for (;;) {
     if (s.stack_size == s.bottom_stack_base) {

@@ -20,7 +20,7 @@ struct Ray {
   std::array<float, 3> origin{}, direction{};  // in world space; the direction need not have length 1
   float t_min = 0, t_max = 0;
   uint32_t flags = 0;
-  uint32_t cull_mask = 0xff;  // The low 8 bits count.
+  uint32_t cull_mask = 0xff;  // Only the low 8 bits count.
   Address structure = 0;      // virtual address of the top-level structure's header
   uint32_t sbt_offset = 0, sbt_stride = 0, miss_index = 0;
 };
@@ -36,8 +36,9 @@ struct Hit {
   uint32_t geometry = 0, primitive = 0;
   uint32_t custom_index = 0;  // 24 bits
   uint32_t sbt_record = 0;    // the instance's shader-binding-table offset, 24 bits
-  Address instance_leaf = 0;  // virtual address of the instance's record: holds the transforms
-  Address triangle_leaf = 0;  // of the leaf with the triangle's corners; 0: the hit is on no triangle
+  Address instance_leaf = 0;  // virtual address of the instance's record, which holds the transforms
+  // virtual address of the leaf with the triangle's corners; 0: the hit is on no triangle
+  Address triangle_leaf = 0;
   bool valid() const { return instance != kNoHit; }
 };
 

@@ -16,13 +16,13 @@ struct Fetch {
   bool operator==(const Fetch&) const = default;
 };
 
-// The traversal keeps it up to date for rays that have one. node[d] is the node visited last at depth d;
-// entry i of the ray's stack is a child of node[parent[i]]. Depths wrap at 256, which no tree that fits a
+// The traversal keeps the path up to date for rays that have one. node[d] is the node visited last at depth
+// d; entry i of the ray's stack is a child of node[parent[i]]. Depths wrap at 256, which no tree that fits a
 // stack of 192 entries comes near.
 struct RayPath {
   const void* ray = nullptr;  // the RayState that owns it
   static constexpr uint8_t kNoParent = 0xff;
-  uint8_t depth = 0;  // of the node visited last
+  uint8_t depth = 0;  // depth of the node visited last
   std::array<uint8_t, 256> parent;
   std::array<Fetch, 256> node;
 };

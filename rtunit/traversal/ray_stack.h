@@ -8,19 +8,20 @@
 
 namespace glint::rt {
 
-// build_top() proves that no ray can need more. The stack model decides how many of them are on chip
+// build_top() proves that no ray can need more entries. The stack model decides how many of them are on chip
 // (rtunit/stack_model.h).
 inline constexpr int kStackEntries = 192;
 
 // Names a node that is still to be visited, and says where the ray enters it.
 struct StackEntry {
-  uint32_t node;  // NodeRef (rtunit/structure/structure.h): block from the base of the structure being
-                  // walked, and kind
+  // NodeRef (rtunit/structure/structure.h): the kind, and the block from the base of the structure being
+  // walked
+  uint32_t node;
   float t_enter;
 };
 
 // Only entries that were set mean anything. Entries deeper than most rays ever go lie apart, in storage that
-// is made when a ray first needs it and then kept. A resident thread so stays below 1 KB of the host's
+// is made when a ray first needs it and then kept. So a resident thread stays below 1 KB of the host's
 // memory, and no ray waits for the heap twice.
 class RayStack {
  public:
@@ -33,7 +34,7 @@ class RayStack {
   }
 
  private:
-  // Choice: of LumiBench's scenes SHIP needs 16, WKND 10, PARK 31 in one ray of fifty.
+  // Choice: of LumiBench's scenes, SHIP needs 16 entries and WKND 10; in PARK, one ray of fifty needs 31.
   static constexpr size_t kNear = 16;
 
   void set_deep(size_t i, const StackEntry& entry) {

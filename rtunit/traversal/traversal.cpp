@@ -68,7 +68,7 @@ void visit_internal(RayState& s, const std::byte* bytes) {
     nearest_first({hits, t_enter, child}, order);
   else
     s.rules.order->sort({hits, t_enter, child}, order);
-  for (int i = hits - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);  // The first is on top.
+  for (int i = hits - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);  // The nearest is on top.
 }
 
 void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
@@ -244,7 +244,7 @@ constexpr FormatCode code_for() {
                 Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte.
   return {step_as<Format>, run_as<Format>, Format::kNodeBytes};
 }
-// The code of each format, in the order of FormatId.
+// Lists the code of each format, in the order of FormatId.
 constexpr FormatCode kFormats[] = {code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
 static_assert(std::size(kFormats) == size_t(FormatId::Count));
 

@@ -10,9 +10,10 @@
 
 namespace glint::rt {
 
-// Starts the ray in `state.ray`: resets everything else. A null structure, a not-a-number or infinite ray and
-// an empty interval end at once as a miss (Choice: Vulkan leaves them undefined). Returns false when
-// `ray.structure` is not a top-level structure, which is the program's fault; the ray is then Done.
+// Starts the ray in `state.ray` and resets everything else. Three kinds of rays end at once as a miss: those
+// with a null structure, with a value that is infinite or not a number, and with an empty interval (Choice:
+// Vulkan leaves them undefined). Returns false when `ray.structure` is not a top-level structure, which is
+// the program's fault; the ray is then Done.
 bool begin(RayState& state, const mem::AddressSpace& memory);
 
 // Returns the node that step() must be given next. It may be called only while Traversing.
@@ -45,9 +46,9 @@ inline void present(RayState& state, uint32_t row) {
   state.table->used &= ~(1u << row);
 }
 
-// These are the answers of shaders. NeedsAnyHit ends with one of the first three; NeedsIntersection with any
-// number of report() (each that answers NeedsAnyHit followed by one of the three), then
-// finish_intersection().
+// These are the answers of shaders. One of the first three ends NeedsAnyHit. NeedsIntersection takes any
+// number of report() and then finish_intersection(); each report() that answers NeedsAnyHit is followed by
+// one of the first three.
 void accept_candidate(RayState& state);
 void ignore_candidate(RayState& state);
 void terminate_candidate(RayState& state);  // Accepts, and ends the traversal.
@@ -57,8 +58,8 @@ enum class Report : uint8_t {
   Accepted,     // The candidate is opaque: it is committed, and attribute_slot has flipped.
   NeedsAnyHit,  // The status is NeedsAnyHit until the candidate is decided, then NeedsIntersection again.
 };
-// Does reportIntersectionEXT(t, kind). Sets report_accepted unless the answer is NeedsAnyHit: then the
-// decision does.
+// Does reportIntersectionEXT(t, kind). It sets report_accepted, unless the answer is NeedsAnyHit: the
+// decision sets it then.
 Report report(RayState& state, float t, uint32_t kind);
 void finish_intersection(RayState& state);
 

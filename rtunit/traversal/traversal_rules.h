@@ -7,8 +7,8 @@
 namespace glint::rt {
 
 struct TraversalRules {
-  // Whether kTerminateOnFirstHit ends the ray at the first hit that is found, or only lets it end once no
-  // nearer one can be. Set before begin().
+  // Says whether kTerminateOnFirstHit ends the ray at the first hit that is found, or only once no nearer hit
+  // is possible. It is set before begin().
   bool end_at_first_hit = true;
   bool in_code = false;  // A program walks the ray, so its stack is not in RayState.
   // The RT unit that walks the ray sets these; begin() sets them to the values here.

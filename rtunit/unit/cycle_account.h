@@ -17,15 +17,15 @@ class CycleAccount {
 
   explicit CycleAccount(RtStats& stats) : stats_(stats) {}
 
-  // Accounts the cycles before `now` that were skipped. Nothing happened in them, so they were like the end
-  // of the last one.
+  // Accounts the cycles before `now` that were skipped. Nothing happened in them, so each has the reason that
+  // held at the end of the last accounted cycle.
   void skip_to(Cycle now) {
     if (now <= next_) return;
     add(now - next_, skipped_reason_, skipped_load_);
     next_ = now;
   }
-  // Accounts cycle `now`; a second call for it has no effect. `idle_reason` is that of the following cycles
-  // if they are skipped.
+  // Accounts cycle `now`; a second call for it has no effect. `idle_reason` is the reason of the following
+  // cycles if they are skipped.
   void account(Cycle now, Stall reason, Stall idle_reason, Load load) {
     if (now < next_) return;
     add(1, reason, load);
@@ -33,7 +33,7 @@ class CycleAccount {
     skipped_reason_ = idle_reason;
     skipped_load_ = load;
   }
-  // Returns RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
+  // Returns what RtStats::warp_cycles will be at the start of cycle `at` if nothing happens before.
   uint64_t warp_cycles_until(Cycle at) const {
     return stats_.warp_cycles.value() + (at - next_) * skipped_load_.warps;
   }

@@ -49,7 +49,8 @@ Cycle FetchQueue::next_event(Cycle now) const {
   return has_request(now) || (!is_full() && has_reads_waiting()) ? now + 1 : kNever;
 }
 
-// The policy picks the warp. Model: of its lanes the lowest that wants a read is served first.
+// The policy picks the warp. Model: among its lanes that want a read, the one with the lowest number is
+// served first.
 bool FetchQueue::choose(Cycle now) {
   if (is_full()) return false;
   bool any = false;
@@ -98,8 +99,8 @@ uint32_t FetchQueue::add(uint32_t slot, LaneMask lanes, const Read& read) {
   return index;
 }
 
-// Sends the next sectors of the node: no more than a request holds, and of one line. A node that begins
-// within a sector takes the whole of it.
+// Sends the next sectors of the node: at most what a request holds, and only sectors of one line. A node that
+// begins within a sector takes the whole of it.
 bool FetchQueue::send(Cycle now) {
   ReadInFlight& read = reads_[sending_];
   const uint32_t bytes = read.read.what.bytes;

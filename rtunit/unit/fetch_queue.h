@@ -22,8 +22,8 @@ struct ReadInFlight {
   uint32_t slot = 0;
   LaneMask lanes = 0;
   Read read;
-  uint32_t sent = 0;        // bytes
-  uint32_t unanswered = 0;  // requests
+  uint32_t sent = 0;        // bytes that requests have been sent for
+  uint32_t unanswered = 0;  // requests that have not been answered
   uint32_t next = kNone;    // another warp's lanes that share it
   bool is_complete() const { return unanswered == 0 && sent >= read.what.bytes; }
 };
@@ -87,10 +87,10 @@ class FetchQueue final : public RequestSource {
   const std::unique_ptr<RayScheduler> scheduler_;
   const std::unique_ptr<Coalescer> coalescer_;
   std::vector<WarpView> views_;
-  std::vector<ReadInFlight> reads_;  // one a lane at most
+  std::vector<ReadInFlight> reads_;  // at most one per lane
   std::vector<uint32_t> free_;
   uint32_t sending_ = ReadInFlight::kNone;
-  uint32_t num_reads_ = 0;  // A read that warps share is one.
+  uint32_t num_reads_ = 0;  // A read that warps share counts as one.
 };
 
 }  // namespace glint::rt

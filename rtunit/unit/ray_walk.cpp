@@ -27,7 +27,8 @@ void RayWalk::start(uint32_t slot, int lane, Cycle now) {
     if (ray.ray.flags & ray_flag::kTerminateOnFirstHit) ++stats_.first_hit_rays;
   } else {
     ++stats_.resumed;
-    // stop() counted the ray when it was given back to the core, but its walk goes on.
+    // stop() counted the ray when it was given back to the core, but its walk goes on, so the count is taken
+    // back.
     stats_.ray_nodes.remove(ray.nodes_visited);
     stats_.ray_latency.remove(ray.unit_cycles);
   }
@@ -77,8 +78,8 @@ void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
   for (WalkHook* hook : hooks_) hook->visited({slot, lane, ray, node.kind, ray.hits_in_interval - hits});
 }
 
-// A shader that gets the ray may end its walk, so the ray is counted now. start() takes that back when the
-// ray returns.
+// A shader that gets the ray may end its walk, so the ray is counted now. start() takes the count back when
+// the ray returns.
 void RayWalk::stop(uint32_t slot, int lane, Cycle now) {
   RayState& ray = buffer_[slot].ray_of(lane);
   ray.unit_cycles += now - buffer_[slot].arrived;

@@ -30,9 +30,10 @@ class RayWalk {
 
   // Begins the walk of a ray that enters the unit, for the first time or again after a shader.
   void start(uint32_t slot, int lane, Cycle now);
-  // The lane is between two nodes: it wants the next one or stops, unless a hook has something to do first.
+  // Continues with a lane that is between two nodes. The lane wants the next node or stops, unless a hook has
+  // something to do first.
   void go_on(uint32_t slot, int lane, Cycle now);
-  // The functional step is made when the test starts; the unit sees its outcome when the test ends.
+  // Starts the test of a node. The functional step is made now; the unit sees its outcome when the test ends.
   void start_test(uint32_t slot, int lane, Cycle now);
   void end_test(uint32_t slot, int lane, Cycle now);
 

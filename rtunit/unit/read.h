@@ -28,7 +28,7 @@ constexpr Pipe pipe_of(NodeKind kind) {
 
 struct Read {
   Fetch what;
-  WalkHook* errand = nullptr;  // who asked for it; null: it is the ray's next node
+  WalkHook* errand = nullptr;  // hook that asked for it; null: it is the ray's next node
   Pipe pipe = kBoxPipe;
 };
 

@@ -12,9 +12,10 @@ class RequestSource {
   virtual bool has_request(Cycle now) const = 0;
   // Sends one request. Returns false when the L1 refuses it; nothing has changed then.
   virtual bool send(Cycle now) = 0;
-  // Returns whether it holds a read that needs an entry for its answer, and so waits while all are in use.
+  // Returns whether a read waits here that needs an entry for its answer. It must wait while all entries are
+  // in use.
   virtual bool has_reads_waiting() const { return false; }
-  // Returns the earliest cycle after `now` in which it has something to do without new input.
+  // Returns the earliest cycle after `now` in which the source has something to do without new input.
   virtual Cycle next_event(Cycle now) const { return has_request(now) ? now + 1 : kNever; }
 };
 

@@ -9,16 +9,17 @@
 
 namespace glint::rt {
 
-// Says what a cycle of the unit was spent on. Each cycle has exactly one reason: the first that holds.
+// Says what a cycle of the unit was spent on. Each cycle has exactly one reason: the first of this list that
+// holds.
 enum class Stall : uint8_t {
-  NodeRequest,    // sent a request to the L1
-  L1Refused,      // had a request and the L1 did not take it
-  MshrFull,       // a lane wants to read and no entry is free
-  TestBusy,       // a node waits for a test pipeline
-  WaitingMemory,  // nodes are on their way
-  TestLatency,    // only tests in flight
-  Handover,       // a warp is being taken over or given back
-  Idle,           // holds no warp
+  NodeRequest,    // The unit sent a request to the L1.
+  L1Refused,      // It had a request, and the L1 did not take it.
+  MshrFull,       // A lane wants to read, and no entry is free.
+  TestBusy,       // A node waits for a test pipeline.
+  WaitingMemory,  // Nodes are on their way.
+  TestLatency,    // Only tests are in flight.
+  Handover,       // A warp is being taken over or given back.
+  Idle,           // The unit holds no warp.
   Count
 };
 constexpr std::string_view name_of(Stall s) {

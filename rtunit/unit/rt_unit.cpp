@@ -35,7 +35,8 @@ RtUnit::RtUnit(const Params& params, const Context& context)
   add_optional_parts(params, context);
 }
 
-// The order decides who sends first, which hook is asked first and which exit a warp passes first.
+// The order of these lines decides who sends first, which hook is asked first and which exit a warp passes
+// first.
 void RtUnit::add_optional_parts(const Params& params, const Context& context) {
   const Shortcuts& shortcuts = params.shortcuts;
   const bool has_tables = context.tables.rows != 0;
@@ -87,7 +88,7 @@ void RtUnit::tick(Cycle now) {
   account_.account(now, reason, idle_reason(), {buffer_.num_resident(), buffer_.num_rays()});
 }
 
-// What has arrived goes to the pipelines. A part of a stack needs no test.
+// Passes what has arrived to the pipelines. A part of a stack needs no test.
 void RtUnit::receive(Cycle now) {
   fetches_.receive(now, [&](const Read& read, uint32_t slot, LaneMask lanes) {
     if (read.pipe == kNoPipe)
@@ -97,7 +98,7 @@ void RtUnit::receive(Cycle now) {
   });
 }
 
-// Sends what the port takes.
+// Sends as many requests as the port takes in a cycle.
 Stall RtUnit::send_requests(Cycle now) {
   bool sent = false;
   for (uint32_t i = 0; i < requests_per_cycle_; ++i) {
@@ -112,8 +113,8 @@ Stall RtUnit::send_requests(Cycle now) {
   return sent ? Stall::NodeRequest : idle_reason();
 }
 
-// A node that has been begun is read to its end. Then writers come before new nodes, so that a finished warp
-// does not wait for the nodes of others.
+// A node whose reading has begun is read to its end. Then writers come before new nodes, so that a finished
+// warp does not wait for the nodes of others.
 RequestSource* RtUnit::next_source(Cycle now) {
   if (fetches_.has_request(now)) return &fetches_;
   for (RequestSource* source : sources_)
@@ -134,7 +135,7 @@ bool RtUnit::has_reads_waiting() const {
                      [](const RequestSource* source) { return source->has_reads_waiting(); });
 }
 
-// Returns what a cycle in which nothing is sent is spent on.
+// Returns the reason of a cycle in which nothing is sent.
 Stall RtUnit::idle_reason() const {
   if (fetches_.is_full() && has_reads_waiting()) return Stall::MshrFull;
   if (pipelines_.is_any_waiting()) return Stall::TestBusy;

@@ -51,7 +51,7 @@ class RtUnit final : public RtPort {
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
   std::optional<uint32_t> pop_completion(Cycle) override { return buffer_.pop_completion(); }
   void tick(Cycle now) override;
-  // The L1's answers are new input, and its own next_event() tells of them.
+  // The L1's answers are new input, and the L1's next_event() tells of them.
   Cycle next_event(Cycle now) const override;
 
   std::string describe() const override;
@@ -64,8 +64,8 @@ class RtUnit final : public RtPort {
   uint32_t num_resident() const { return buffer_.num_resident(); }
   Probe<NodeVisited>& node_visited() { return walk_.node_visited(); }
   Probe<WarpMoved>& warp_moved() { return buffer_.warp_moved(); }
-  // Tells each(warp slot, lanes) of whom the read that is just being sent is for. `token` is that of its
-  // request.
+  // Calls each(warp slot, lanes) for all whom the read that is just being sent serves. `token` is the token
+  // of its request.
   template <class Each>
   void for_each_reader(mem::Token token, Each&& each) const {
     fetches_.for_each_reader(token,
@@ -91,7 +91,7 @@ class RtUnit final : public RtPort {
   FetchQueue fetches_;
   CycleAccount account_;
   std::vector<std::shared_ptr<void>> parts_;  // owns the parts that not every configuration has
-  std::vector<RequestSource*> sources_;       // of these parts, by priority
+  std::vector<RequestSource*> sources_;       // the sources among these parts, by priority
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
   bool has_news_ = false;  // A warp was submitted since the last tick.
 };

@@ -29,8 +29,8 @@ void StackMover::visited(const Visit& visit) {
   work_of(visit.slot, visit.lane) = model_->settle(visit.ray);
 }
 
-// Model: a ray that a second ray of its lane has overtaken while it waited for a shader (a ray query in an
-// any-hit shader) loses its path; the rest of its stack then counts as on chip.
+// Model: a ray loses its path when it waits for a shader and a second ray of its lane overtakes it (a ray
+// query in an any-hit shader). The rest of its stack then counts as on chip.
 void StackMover::keep_path(RayState& ray, uint32_t warp_slot, int lane) {
   if (paths_.size() <= warp_slot) paths_.resize(warp_slot + 1);
   if (!paths_[warp_slot]) paths_[warp_slot] = std::make_unique<WarpPaths>();
@@ -46,7 +46,7 @@ void StackMover::keep_path(RayState& ray, uint32_t warp_slot, int lane) {
   }
 }
 
-// Spills do not keep the lane waiting. Fills and repeated visits do, one after the other.
+// A lane does not wait for its spills. It waits for its fills and repeated visits, which follow one another.
 bool StackMover::detour(uint32_t slot, int lane) {
   StackWork& work = work_of(slot, lane);
   for (; work.spills; --work.spills) {

@@ -57,7 +57,7 @@ class StackMover final : public RequestSource, public WalkHook {
   WarpBuffer& buffer_;
   FetchQueue& fetches_;
   RtStats& stats_;
-  std::vector<std::array<StackWork, kLanes>> work_;  // still to be done before the lane's next node, by slot
+  std::vector<std::array<StackWork, kLanes>> work_;  // work left before the lane's next node, by slot
   mem::Ring<Move> moves_;
   std::vector<std::unique_ptr<WarpPaths>> paths_;  // by the core's warp slot
 };

@@ -17,7 +17,7 @@ TableWriter::TableWriter(mem::L1Port& l1, WarpBuffer& buffer, RtStats& stats, co
       unsent_(buffer.size()) {
 }
 
-// What a visit has put into the lane's table goes to memory.
+// Whatever a visit has put into the lane's table goes to memory.
 void TableWriter::visited(const Visit& visit) {
   if (!visit.ray.table) return;
   const uint32_t added = visit.ray.table->take_unwritten();

@@ -13,7 +13,8 @@
 
 namespace glint::rt {
 
-// Lanes that have filled the same row share a request, if their entries lie in one line and are not yet sent.
+// Lanes that have filled the same row share a request, if their entries lie in one line and have not been
+// sent.
 class TableWriter final : public RequestSource, public WalkHook {
  public:
   TableWriter(mem::L1Port& l1, WarpBuffer& buffer, RtStats& stats, const TableLayout& tables);
@@ -25,7 +26,7 @@ class TableWriter final : public RequestSource, public WalkHook {
  private:
   struct Unsent {
     uint32_t rows = 0;                            // rows of the table with entries to write
-    std::array<LaneMask, kMaxTableRows> lanes{};  // of each of these rows
+    std::array<LaneMask, kMaxTableRows> lanes{};  // lanes of each of these rows
   };
 
   mem::L1Port& l1_;

@@ -32,7 +32,7 @@ class TestPipelines {
   struct Test {
     uint32_t slot = 0;
     uint8_t lane = 0;
-    uint8_t starts_left = 1;  // A leaf of two triangles takes two.
+    uint8_t starts_left = 1;  // A leaf of two triangles needs two.
   };
   struct Running {
     Cycle ready = 0;
@@ -45,8 +45,8 @@ class TestPipelines {
     mem::Ring<Test> waiting;
     mem::Ring<Running> running;
     Cycle interval_start = 0;
-    uint32_t started = 0;  // in the interval that began at interval_start
-    bool is_used = false;  // interval_start means something
+    uint32_t started = 0;  // tests started in the interval that began at interval_start
+    bool is_used = false;  // interval_start is valid
   };
   uint8_t starts_of(const Read& read) const;
 

@@ -13,23 +13,24 @@ struct Visit {
   int lane = 0;
   RayState& ray;
   NodeKind kind = NodeKind::Internal;
-  uint32_t hits = 0;  // triangles of the node that were met within the ray
+  uint32_t hits = 0;  // triangles of the node that were met within the ray's interval
 };
 
 // RayWalk calls its hooks at each step in the order in which they were added.
 class WalkHook {
  public:
   virtual ~WalkHook() = default;
-  // A ray enters the unit, for the first time (no node visited yet) or after a shader.
+  // Tells that a ray enters the unit, for the first time (no node visited yet) or after a shader.
   virtual void entered(uint32_t /*slot*/, int /*lane*/) {}
-  // The lane is about to want its ray's next node, or to stop. Returns true when something else comes first:
-  // the hook has made the lane want a read of its own, or calls for RayWalk::go_on() when it is done.
+  // Tells that the lane is about to want its ray's next node, or to stop. Returns true when something else
+  // comes first: the hook has made the lane want a read of its own, or calls RayWalk::go_on() when it is
+  // done.
   virtual bool detour(uint32_t /*slot*/, int /*lane*/) { return false; }
-  // The test of a read that the hook asked for has started.
+  // Tells that the test of a read that the hook asked for has started.
   virtual void errand_started(uint32_t /*slot*/, int /*lane*/) {}
-  // The test of the ray's node has started; the traversal has made its step.
+  // Tells that the test of the ray's node has started; the traversal has made its step.
   virtual void visited(const Visit&) {}
-  // The test of the lane's read has ended, whoever asked for it.
+  // Tells that the test of the lane's read has ended, whoever asked for it.
   virtual void test_ended(uint32_t /*slot*/, int /*lane*/) {}
 };
 

@@ -29,14 +29,14 @@ struct WarpMoved {
 // or has stopped.
 struct BufferSlot {
   bool is_used = false;
-  uint32_t warp_slot = 0;  // the core's
+  uint32_t warp_slot = 0;  // the core's warp slot
   LaneMask mask = 0, wanting = 0, stopped = 0;
   RayState* states = nullptr;
   uint64_t age = 0;  // order of arrival
   Cycle arrived = 0;
   uint32_t unsent_writes = 0;     // The warp stays until the L1 has taken them.
   size_t next_exit = 0;           // first of the buffer's exits that the warp has not passed
-  std::array<Read, kLanes> read;  // of the lanes that want a read, wait for one or are in a test
+  std::array<Read, kLanes> read;  // reads of the lanes that want one, wait for one or are in a test
 
   // Returns the ray that a lane works for.
   RayState& ray_of(int lane) const { return states[lane]; }
@@ -77,7 +77,7 @@ class WarpBuffer {
   bool has_leaving_warps() const { return !finished_.empty() || !completions_.empty(); }
   bool has_wanting_lanes() const;
   uint32_t num_resident() const { return num_resident_; }
-  uint32_t num_rays() const { return num_rays_; }  // those that have not stopped
+  uint32_t num_rays() const { return num_rays_; }  // rays that have not stopped
   Probe<WarpMoved>& warp_moved() { return warp_moved_; }
 
  private:
