@@ -37,7 +37,8 @@ void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp,
 
 // Collects the entries of the candidates whose shaders are called. Model: the unit makes one read for all of
 // a warp's lanes, together with their records of the binding table. What the shaders then read of a candidate
-// is in registers. Tables of nested traces share their place, because an outer table is empty by then.
+// is in registers. Nested traces use the same memory for their tables, because an outer table is empty by
+// then.
 void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpContext& warp,
                                      LaneMask lanes) const {
   if (tables_.rows == 0) return;

@@ -38,8 +38,8 @@ void CodeCache::tick(Cycle now) {
   send(now);
 }
 
-// Looks up one line. The cycle between asking and here is the first of the latency, so that an unloaded cache
-// adds just that.
+// Looks up one line. The cycle from the request to this look-up is the first of the latency, so an unloaded
+// cache adds exactly its latency.
 void CodeCache::look_up(Cycle now) {
   if (asked_.empty() || now < lookup_free_ || now <= asked_.front().at) return;
   const Asked asked = asked_.front();

@@ -14,8 +14,8 @@
 
 namespace glint::core {
 
-// Looks up one line per cycle, in the order asked. A line on its way is asked for once, however many wait for
-// it.
+// Looks up one line per cycle, in the order of the requests. A line that is already on its way is requested
+// only once, however many clients wait for it.
 class CodeCache {
  public:
   static constexpr uint32_t kMaxClients = 16;
@@ -32,7 +32,7 @@ class CodeCache {
   // that waits.
   void tick(Cycle now);
   std::span<const Answer> answers() const { return answers_; }
-  Cycle next_event(Cycle now) const;  // the L1's answers are the L1's events
+  Cycle next_event(Cycle now) const;  // The L1's answers are the L1's events.
   bool idle() const { return asked_.empty() && hits_.empty() && fills_.empty() && num_missing_ == 0; }
   uint32_t line_bytes() const { return line_bytes_; }
 

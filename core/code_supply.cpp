@@ -8,8 +8,8 @@
 namespace glint::core {
 namespace {
 
-// This is the constant cache's number among the clients of the cache behind; schedulers have the numbers
-// below.
+// This is the constant cache's number among the clients of the cache behind. Schedulers have the lower
+// numbers.
 constexpr uint32_t kConstantClient = kMaxSchedulers;
 
 }  // namespace

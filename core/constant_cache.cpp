@@ -33,7 +33,7 @@ bool ConstantCache::look_up(uint32_t slot, const isa::Access& access, LaneMask l
   Address last = ~Address{0};
   for_each_lane(lanes, [&](int lane) {
     const uint64_t at = offset + access.address[size_t(lane)];
-    if (at >= bytes_) return;  // this is a fault that was let pass
+    if (at >= bytes_) return;  // This is a fault that was let pass.
     const Address line = (base_ + at) & ~Address{line_bytes_ - 1};
     if (line != last) want(slot, line, now);
     last = line;

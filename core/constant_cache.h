@@ -10,8 +10,8 @@
 
 namespace glint::core {
 
-// Returns the number of different words at which the lanes of an access begin, which is the number of turns
-// that broadcasting one after another takes.
+// Returns the number of different words at which the lanes of an access begin. Broadcasting one word after
+// another takes this number of turns.
 uint32_t different_words(const isa::Access& access, LaneMask lanes);
 
 // Serves loads. A load whose lines are all present takes its fixed time; otherwise its warp waits for all of
@@ -38,7 +38,7 @@ class ConstantCache {
       if (--missing_[slot] == 0) served(slot);
     }
   }
-  // Number of lines that a core's warps may wait for.
+  // This is the number of lines that a core's warps may wait for.
   static constexpr uint32_t kMost = 64 * uint32_t(kLanes);
 
  private:

@@ -29,8 +29,8 @@
 namespace glint::core {
 
 // Goes through a cycle in this order: L1, RT unit and load-store unit; then their answers wake warps; then
-// each scheduler issues one instruction, which is executed at once and charged for afterwards. Cycles in
-// which nothing can happen are skipped, which gives the same result as stepping through them.
+// each scheduler issues one instruction, which is executed at once and whose time is charged afterwards.
+// Cycles in which nothing can happen are skipped, which gives the same result as stepping through them.
 class CoreCell final : public Cell {
  public:
   struct Context {
@@ -79,7 +79,7 @@ class CoreCell final : public Cell {
   Cycle next_event(Cycle from) const override;
   bool finished() const override {
     return warps_.num_resident() == 0 && lsu_.idle() && (!code_ || code_->idle()) &&
-           l1_.next_event(accounted_) == kNever;  // the last writes have left
+           l1_.next_event(accounted_) == kNever;  // The last writes have left.
   }
   uint64_t progress() const override { return counts_.progress; }
   // Returns a number that grows when a warp begins, ends or is handed to the RT unit, and with what

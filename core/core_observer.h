@@ -1,4 +1,4 @@
-// Interface: hears what happens to the warps of one core, as its cell simulates it.
+// Declares the interface that hears what happens to the warps of one core, as its cell simulates it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -20,20 +20,20 @@ namespace glint::core {
 class CoreObserver {
  public:
   virtual ~CoreObserver() = default;
-  // The warp holds the slot from cycle `now` on.
+  // Tells that the warp holds the slot from cycle `now` on.
   virtual void start_warp(Cycle /*now*/, uint32_t /*slot*/, const exec::WarpContext&) {}
-  // The instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and then for
-  // its turn at `door` (Stall::Issued: at the scheduler, or a pipe).
+  // Tells that the instruction at `pc` of the warp is about to issue. It waited for `wait` until `ready`, and
+  // then for its turn at `door` (Stall::Issued stands for the scheduler or a pipe).
   virtual void select(Cycle /*now*/, uint32_t /*slot*/, Cycle /*ready*/, Stall /*wait*/, Stall /*door*/,
                       uint32_t /*pc*/) {}
-  // The instruction was executed.
+  // Tells that the instruction was executed.
   virtual void issue(Cycle /*now*/, uint32_t /*slot*/, const exec::Issued&) {}
-  // Lanes begin a shader of that stage, which another shader has called.
+  // Tells that lanes begin a shader of that stage, which another shader has called.
   virtual void call(uint32_t /*slot*/, isa::Stage, LaneMask) {}
-  // The rays of these lanes travel from now on (start_rays) or have stopped (end_rays).
+  // Tell that the rays of these lanes travel from now on (start_rays) or have stopped (end_rays).
   virtual void start_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
   virtual void end_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
-  // The warp has freed its slot: cycle `now` is no longer its own.
+  // Tells that the warp has freed its slot: cycle `now` is no longer its own.
   virtual void end_warp(Cycle /*now*/, uint32_t /*slot*/) {}
 };
 

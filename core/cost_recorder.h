@@ -14,7 +14,7 @@ namespace glint::core {
 // named.
 struct ThreadCost {
   uint32_t cycles = 0;  // from the thread's first instruction to its last
-  // Cycles from an instruction that the thread executed to the next one of its warp.
+  // These are the cycles from an instruction that the thread executed to the next one of its warp.
   uint32_t active_cycles = 0;
   uint32_t instructions = 0;        // executed instructions: core.lane_instructions
   uint32_t rays = 0;                // rt_unit.rays
@@ -22,10 +22,11 @@ struct ThreadCost {
   uint32_t triangle_tests = 0;      // rt_unit.triangle_tests
   uint32_t any_hit_calls = 0;       // core.any_hit.invocations
   uint32_t intersection_calls = 0;  // core.intersection.invocations
-  // Lane slots, 32 for each instruction, shared among the lanes that execute it: core.lane_slots.
+  // These are lane slots, 32 for each instruction, which are shared among the lanes that execute it:
+  // core.lane_slots.
   double slots = 0;
-  // Value of l1.misses without those of instructions and constants. Each miss is shared among the lanes that
-  // it is for.
+  // This is the thread's part of l1.misses, without those of instructions and constants. Each miss is shared
+  // among the lanes that it is for.
   double l1_misses = 0;
 };
 
@@ -67,7 +68,8 @@ class CostRecorder final : public CoreObserver {
  private:
   struct Slot {
     uint32_t warp_index = 0;
-    // Lanes that came to an instruction, that have executed one, and that executed the last one.
+    // These are the lanes that came to an instruction, that have executed one, and that executed the last
+    // one.
     LaneMask present = 0, started = 0, last = 0;
     Cycle last_issue = 0;
     std::array<Cycle, kLanes> first{}, end{};

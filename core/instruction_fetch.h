@@ -38,7 +38,7 @@ class InstructionFetch {
   };
   struct InFlight {
     uint32_t line = 0;
-    bool wanted = false;  // a warp waits for it
+    bool wanted = false;  // A warp waits for it.
   };
   // Holds one L0. Model: the stream buffer follows the last miss; hardware's replacement among streams is not
   // published.

@@ -1,4 +1,5 @@
-// Interface: chooses which ready warp a scheduler of a core issues from in a cycle.
+// Declares the interface of the policies that choose which ready warp a scheduler of a core issues from in a
+// cycle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

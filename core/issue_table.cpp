@@ -72,10 +72,10 @@ Finish finish_of(const isa::OpRow& row) {
       return Finish::Control;
     case Effect::Barrier:
       return Finish::Barrier;
-    // Lanes of a warp see each other's accesses in order anyway.
+    // Lanes of a warp see each other's accesses in order without a fence.
     case Effect::Fence:
       return isa::FenceScope(row.detail) == isa::FenceScope::Warp ? Finish::Control : Finish::Fence;
-    // ssy only notes a place, and the next instruction follows it.
+    // ssy only names the place where lanes meet again, and the warp goes on with the next instruction.
     case Effect::PushReconvergence:
     case Effect::None:
     case Effect::ImageQuery:
@@ -104,7 +104,7 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
       return row.memory.space == isa::Space::Local    ? Stall::LocalMemory
              : row.memory.space == isa::Space::Shared ? Stall::SharedMemory
                                                       : Stall::LongScoreboard;
-    return Stall::Texture;  // stores have no dependents
+    return Stall::Texture;  // Stores have no dependents.
   }
   if (finish == Finish::Rays) return Stall::RtWait;
   if (finish == Finish::Barrier) return Stall::Barrier;

@@ -33,7 +33,7 @@ enum class Finish : uint8_t {
 };
 
 struct IssueRow {
-  // Index into IssueTable's list of registers that have to be ready, the destinations last.
+  // This is the index into IssueTable's list of registers that have to be ready, the destinations last.
   uint32_t first_use = 0;
   uint8_t num_uses = 0;  // including the destinations
   uint8_t num_defs = 0;
@@ -53,7 +53,7 @@ struct IssueRow {
 };
 static_assert(sizeof(IssueRow) == 16);
 
-// Scoreboard index of the first predicate. The indices of 32-bit registers come first.
+// This is the scoreboard index of the first predicate. The indices of 32-bit registers come first.
 inline constexpr uint16_t kFirstPredicate = 256;
 inline constexpr uint16_t kScoreboardEntries = kFirstPredicate + isa::kNumPredicates;
 

@@ -85,7 +85,7 @@ void Lsu::accept(Group& group, Cycle now) {
 // Puts an access at the end of its pipe.
 void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
   MemoryAccess& access = accesses_[id];
-  // The cycle between issue and here is the first of the latency, so that an unloaded unit adds just that.
+  // The cycle from issue to here is the first of the latency, so an unloaded unit adds exactly its latency.
   access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
   if (access.texture) {
     const Cycle cycles = texture_cycles(access);

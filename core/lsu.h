@@ -24,7 +24,7 @@ struct MemoryAccess {
   Cycle late_until = 0;  // the registers that it fills are not written before this cycle
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
-  bool texture = false;  // goes through the texture unit
+  bool texture = false;  // It goes through the texture unit.
   uint32_t samples = 0;  // number of samples of up to four texels; 0 unless `texture`
   bool atomic = false;   // an atomic that shared memory does, if the word is there
   AtomicKind atomic_kind = AtomicKind::Integer;

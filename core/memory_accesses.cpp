@@ -56,7 +56,7 @@ bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issue
 
 void MemoryAccesses::count(const isa::OpRow& op) {
   CoreStats& stats = core_.counts.stats;
-  // Generic accesses count where most of them go; every other effect makes no access.
+  // Generic accesses count as global, where most of them go. Effects that are not named here make no access.
   const bool local = op.memory.space == isa::Space::Local, shared = op.memory.space == isa::Space::Shared;
   if (op.effect == Effect::Atomic) {
     ++(shared ? stats.shared_atomics : stats.global_atomics);

@@ -18,7 +18,8 @@ class MemoryAccesses {
     Lsu& lsu;
     LocalLayout local;       // layout of the core's lanes' stacks
     rt::TableLayout tables;  // layout of the candidates of the core's rays
-    // Length of the turns after which other cores see what this one wrote. 0: there are no others.
+    // This is the length of the turns after which other cores see what this one wrote. 0 means that there are
+    // no others.
     Cycle turn = 0;
   };
   MemoryAccesses(const CoreParts& core, const Context& context);
@@ -27,8 +28,8 @@ class MemoryAccesses {
   void start_warp(uint32_t slot) { pending_[slot] = {}; }
   // Hands the access of an executed instruction to the load-store unit. Returns false when no lane makes one.
   bool start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
-  // Starts a fence, which lets the warp go on a latency after the warp's earlier accesses are done. A fence
-  // among cores lasts until the other cores see what came before it, however short its latency.
+  // Starts a fence. The warp goes on a latency after its earlier accesses are done. A fence among cores lasts
+  // until the other cores see what came before it, however short its latency.
   void start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
   // Takes the accesses that the load-store unit has read or completed in this cycle, after the unit's tick.
   void take_answers(Cycle now);
@@ -42,8 +43,8 @@ class MemoryAccesses {
  private:
   struct Pending {
     uint32_t accesses = 0;
-    Cycle fence = 0;          // latency of the fence that waits for the accesses; 0: none does
-    bool has_stored = false;  // the warp has stored to global memory since its last fence among cores
+    Cycle fence = 0;          // latency of the fence that waits for the accesses; 0: no fence waits
+    bool has_stored = false;  // The warp has stored to global memory since its last fence among cores.
   };
   void count(const isa::OpRow& op);
   void read_operands(uint32_t access_id, Cycle now);

@@ -1,4 +1,5 @@
-// Interface: gives the times of single ops, where they are not those of their unit.
+// Declares the interface of the policies that give single ops a time of their own, where it is not that of
+// their unit.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,10 +17,10 @@ namespace glint::core {
 struct OpTime {
   std::string_view name;  // name of an op; one '*' stands for any text
   uint32_t latency = 1;   // cycles from issue to the issue of a dependent instruction
-  // Mean cycles from issue to the next issue on the pipe, a multiple of 1 / kParts.
+  // These are the mean cycles from issue to the next issue on the pipe, a multiple of 1 / kParts.
   double interval = 1;
   isa::Unit pipe = isa::Unit::Count;  // the unit on whose pipe it runs; Count: its own unit
-  bool alternates = false;  // it alternates between pipes, so that `latency` includes their crossing
+  bool alternates = false;  // It alternates between pipes, so that `latency` includes their crossing.
   uint32_t issues = 1;      // machine instructions that make up the op: issue slots, spread over the latency
 
   static constexpr uint32_t kParts = 16;  // parts of a cycle

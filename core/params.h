@@ -22,7 +22,7 @@ namespace glint::core {
 inline constexpr uint32_t kMaxWarps = 64;  // most resident warps of a core (GA100, GH100)
 inline constexpr uint32_t kMaxSchedulers = 8;
 inline constexpr uint32_t kMaxRegisterBanks = 8;
-// Registers of a lane are given out in eights (CUDA occupancy tables).
+// CUDA gives out the registers of a lane in eights (CUDA occupancy tables).
 inline constexpr uint32_t kRegisterUnit = 8;
 
 struct UnitParams {
@@ -104,8 +104,8 @@ struct LsuParams {
   // By the same paper's table 2, the registers of a load may be overwritten 11 cycles after it, and those of
   // a load from shared memory 9 cycles after it.
   uint32_t war_latency = 11, shared_war_latency = 9;
-  uint32_t atomic_latency = 0;  // an H200: 204; 0, because that of other parts is unpublished
-  bool atomic_turns = false;    // an H200: true; false, because that of other parts is unpublished
+  uint32_t atomic_latency = 0;  // H200: 204; 0, because that of other parts is unpublished
+  bool atomic_turns = false;    // H200: true; false, because that of other parts is unpublished
   bool holds_operands() const { return war_latency + shared_war_latency > 0; }
   static constexpr auto params() {
     return std::tuple{
@@ -236,12 +236,12 @@ struct SharedParams {
   }
 };
 
-// Holds the times of fences. Defaults: an H200, without stores before. Model: no acknowledgement travels. A
-// fence waits until the warp's accesses have been answered or taken by the L1, whose queue keeps their order,
-// and then for this time.
+// Holds the times of fences. Defaults: an H200's, measured without stores before the fence. Model: no
+// acknowledgement travels. A fence waits until the warp's accesses have been answered or taken by the L1,
+// whose queue keeps their order, and then for this time.
 struct FenceParams {
   uint32_t block = 36, gpu = 289, system = 1055;
-  uint32_t acknowledgement = 0;  // an H200: 286; 0: stores are done when they have left their core
+  uint32_t acknowledgement = 0;  // H200: 286; 0: stores are done when they have left their core
   static constexpr auto params() {
     return std::tuple{param(&FenceParams::block, "block", "cycle",
                             "Cycles that membar.cta takes after the warp's last access.", 1, 60000),
@@ -297,7 +297,7 @@ struct Params {
   SharedParams shared;
   FenceParams fence;
   PrologueParams prologue;
-  // Hardware's value is true. With false, the launch ends when its last write has left its core.
+  // Hardware behaves as with true. With false, the launch ends when its last write has left its core.
   bool ends_when_written = false;
   uint32_t launch_latency = 5000;  // Vulkan-Sim, -gpgpu_kernel_launch_latency
   uint32_t warp_launch_latency = 0;
@@ -305,7 +305,7 @@ struct Params {
   uint32_t block_interval = 1;
   PolicyChoice<exec::WarpLayout> layout{"linear"};
   uint64_t instruction_budget = 100'000'000;
-  // Choice: this is 15 ms of a GPU. Only warps that spin are known to do so little for so long.
+  // Choice: this is 15 ms of a GPU. Only warps that spin are known to make so little progress for so long.
   uint64_t livelock_budget = 20'000'000;
   static constexpr auto params() {
     return std::tuple{

@@ -20,7 +20,7 @@ struct InstructionCounts : ProfileCounts {
 // core's issue slots, reason by reason.
 class Profile {
  public:
-  static constexpr uint32_t kNowhere = ~0u;  // there was no warp
+  static constexpr uint32_t kNowhere = ~0u;  // There was no warp.
 
   Profile(size_t num_instructions, uint32_t schedulers)
       : counts_(num_instructions + 1), at_(schedulers, kNowhere) {}

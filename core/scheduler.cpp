@@ -27,7 +27,7 @@ uint64_t Scheduler::find_ready(Cycle now, const Doors& doors) {
   Cycle next = kNever;
   Stall reason = Stall::NoWarp;
   uint64_t free = 0;
-  // The loop has no branches, because other warps wait in every cycle.
+  // The loop has no branches, because the warps that wait are others in every cycle.
   for (uint64_t rest = resident_; rest; rest &= rest - 1) {
     const auto i = size_t(std::countr_zero(rest));
     const bool waits = ready_at_[i] > now;

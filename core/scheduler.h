@@ -158,7 +158,7 @@ class Scheduler {
   std::array<Cycle, kNumPipes> pipe_busy_{};           // end of the pipe's work, in parts of a cycle
 
   Cycle sleep_until_ = 0;
-  // Doors that were full. The second stands for both queues of the load-store unit.
+  // These are the doors that were full. The second stands for both queues of the load-store unit.
   bool watches_rt_ = false, watches_lsu_ = false;
   uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at
   Stall reason_ = Stall::NoWarp;

@@ -20,7 +20,7 @@ namespace glint::core {
 class Scoreboard {
  public:
   struct Ready {
-    Cycle at = 0;                  // kNever: known when an access or the RT unit answers
+    Cycle at = 0;                  // kNever: it is known when an access or the RT unit answers
     Stall wait = Stall::RawFixed;  // what the last of the registers waits for
   };
 
@@ -83,8 +83,8 @@ class Scoreboard {
       held_[r] = std::max(held_[r], end);
     }
   }
-  // Sets the ready time. `from` is the pipe whose result it is; Count: a result that does not reach others
-  // later.
+  // Sets the ready time. `from` is the pipe whose result it is. Count stands for a result that reaches all
+  // pipes at the same time.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
     for (uint16_t r : registers) {
       ready_[r] = value.at;

@@ -1,4 +1,4 @@
-// Holds the rest of a sequence: machine instructions that one ISA instruction stands for, or a prologue.
+// Holds the rest of a sequence: the machine instructions that one ISA instruction stands for, or a prologue.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

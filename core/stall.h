@@ -9,32 +9,32 @@
 namespace glint::core {
 
 // Names the reasons, ordered by nearness to issue. When several warps of a scheduler wait for different
-// things, the cycle is given to the first of them in this order, because the warp that had least left to wait
-// for is what was missed.
+// things, the cycle is given to the first of them in this order, because the warp that was nearest to issue
+// is the one that was missed.
 enum class Stall : uint8_t {
-  Issued,          // an instruction was issued
-  MathThrottle,    // operands are ready, but the execution pipe still takes the previous instruction
-  RegisterBanks,   // operands are ready, but the banks of the register file still read those of another one
-  LsuThrottle,     // operands are ready, but the scheduler's memory queue or the table of accesses is full
-  TexThrottle,     // operands are ready, but the queue of texture instructions is full
-  RtFull,          // rays are ready, but the RT unit takes no more warps
-  RawFixed,        // result of an integer, floating-point, move or predicate instruction
-  OperandRead,     // read of a register to overwrite, by a memory instruction that has not read it yet
-  RawSfu,          // result of the special-function pipe: transcendentals and divisions
-  Const,           // result of a constant load
-  Branch,          // target of a branch that is not yet known
-  NoInstruction,   // line of instructions
-  LocalMemory,     // load from local memory
-  SharedMemory,    // load from shared memory, or an atomic on it
-  Texture,         // texture or image load
-  LongScoreboard,  // load from global memory, whichever level answers
-  Call,            // record of the shader binding table
-  Barrier,         // other warps of the block that have not come
-  Fence,           // earlier accesses of the warp, not yet seen by those that the fence asks for
-  RtWait,          // the warp is in the RT unit
-  Dispatch,        // the warp is being launched
-  Drain,           // the warp has ended, but its last accesses have not
-  NoWarp,          // no warp is resident
+  Issued,          // An instruction was issued.
+  MathThrottle,    // Operands are ready, but the execution pipe still takes the previous instruction.
+  RegisterBanks,   // Operands are ready, but the register banks still read those of another instruction.
+  LsuThrottle,     // Operands are ready, but the scheduler's memory queue or the table of accesses is full.
+  TexThrottle,     // Operands are ready, but the queue of texture instructions is full.
+  RtFull,          // Rays are ready, but the RT unit takes no more warps.
+  RawFixed,        // The result of an integer, floating-point, move or predicate instruction is missing.
+  OperandRead,     // A memory instruction has not read a register yet that is to be overwritten.
+  RawSfu,          // The result of the special-function pipe is missing: of a transcendental or a division.
+  Const,           // The result of a constant load is missing.
+  Branch,          // The target of a branch is not known yet.
+  NoInstruction,   // The line of instructions is missing.
+  LocalMemory,     // The result of a load from local memory is missing.
+  SharedMemory,    // The result of a load from shared memory, or of an atomic on it, is missing.
+  Texture,         // The result of a texture or image load is missing.
+  LongScoreboard,  // The result of a load from global memory is missing, whichever level answers.
+  Call,            // The record of the shader binding table is missing.
+  Barrier,         // Other warps of the block have not come to the barrier.
+  Fence,           // Those that the fence asks for have not seen the warp's earlier accesses yet.
+  RtWait,          // The warp is in the RT unit.
+  Dispatch,        // The warp is being launched.
+  Drain,           // The warp has ended, but its last accesses have not.
+  NoWarp,          // No warp is resident.
   Count
 };
 

@@ -42,7 +42,7 @@ std::string describe_warp(const WarpSlot& slot, uint32_t accesses, const exec::W
 }  // namespace
 
 std::string describe_warps(const WarpSlots& warps, const MemoryAccesses& memory, const exec::World& world) {
-  // Each text has the warps that it is about.
+  // Groups the warps by what is said about them. Each text comes with its warps.
   std::vector<std::pair<std::string, std::vector<uint64_t>>> groups;
   for (uint32_t slot = 0; slot < warps.size(); ++slot) {
     if (!warps.is_resident(slot)) continue;

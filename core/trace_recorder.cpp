@@ -67,7 +67,8 @@ void TraceRecorder::start_warp(Cycle now, uint32_t slot, const exec::WarpContext
   slots_[slot] = {warp.warp_index, image_.shader_of[warp.simt.pc], now, now, now, now};
 }
 
-// Notes a wait. It is part of the stage whose instruction waits or, for rays, of the one that traced them.
+// Notes a wait. It is part of the stage whose instruction waits. A wait for rays is part of the stage that
+// traced them.
 void TraceRecorder::select(Cycle now, uint32_t slot, Cycle ready, Stall reason, Stall door, uint32_t pc) {
   if (reason != Stall::RtWait) enter_stage(slot, pc);
   wait(slot, reason, std::min(ready, now));

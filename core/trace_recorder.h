@@ -15,7 +15,7 @@ namespace glint::core {
 // is kept.
 class TraceRecorder final : public CoreObserver {
  public:
-  // Choice: what takes less than this many cycles is part of running and not a wait of its own.
+  // Choice: what takes less than this many cycles counts as running, not as a wait of its own.
   static constexpr Cycle kShortWait = 4;
 
   // `room` is a number of slices, at least least_room(). Nothing is allocated later.
@@ -44,10 +44,10 @@ class TraceRecorder final : public CoreObserver {
  private:
   struct Slot {
     uint32_t warp = 0, shader = 0;
-    Cycle begin = 0;  // begin of the warp
+    Cycle begin = 0;  // when the warp began
     Cycle stage_begin = 0;
-    Cycle run_begin = 0;  // begin of the running state, which lasts up to `known`
-    Cycle known = 0;      // what came before is in a slice, or is running
+    Cycle run_begin = 0;  // when the running state began, which lasts up to `known`
+    Cycle known = 0;      // What came before is in a slice, or is running.
   };
   struct RtStay {
     Cycle begin = 0;

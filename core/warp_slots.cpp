@@ -68,8 +68,8 @@ void WarpSlots::refresh(uint32_t slot, Cycle now) {
   WarpSlot& at = slots_[slot];
   if (fetch_) come_to_line(at, now);
   if (at.sequence.is_under_way()) {
-    // The rest of a sequence needs only an issue slot: it has no operands, and the memory pipe is never busy
-    // by itself.
+    // The rest of a sequence needs only an issue slot. It has no operands, and the memory pipe, which stands
+    // for its pipe here, is never busy by itself.
     at.scheduler->set_next(at.local, {at.front.at, at.front.wait, Pipe::Memory, Door::None});
     return;
   }

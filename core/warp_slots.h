@@ -53,7 +53,7 @@ class WarpSlots {
   const IssueTable& table_;
   const CoreObservers& observers_;
   InstructionFetch* const fetch_;
-  const bool holds_operands_;  // memory instructions read their registers when they leave their queue
+  const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
   const uint32_t prologue_;    // machine instructions before a warp's first instruction
   std::vector<Scheduler> schedulers_;
   std::vector<WarpSlot> slots_;

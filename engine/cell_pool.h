@@ -49,7 +49,7 @@ class CellPool {
   std::unique_ptr<Place[]> places_;
   const size_t num_places_;
   Cycle from_ = 0, until_ = 0;                   // the bounds of the present window
-  alignas(64) std::atomic<uint64_t> window_{0};  // the number of the window, or kEnd: the threads end
+  alignas(64) std::atomic<uint64_t> window_{0};  // number of the window, or kEnd: the threads end
   alignas(64) std::atomic<uint64_t> left_{0};    // number of cells that have not advanced yet
   std::vector<std::thread> helpers_;
 };

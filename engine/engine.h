@@ -16,7 +16,7 @@
 
 namespace glint {
 
-// Is what the engine knows of a channel: it hands over the messages between two windows.
+// Shows the engine's side of a channel, which hands over the messages between two windows.
 class ChannelBase {
  public:
   virtual ~ChannelBase() = default;
@@ -61,11 +61,12 @@ class Channel final : public ChannelBase {
     Cycle arrival;
     Message message;
   };
-  std::vector<Timed> inbox_, sent_;  // keep their capacity, so that sending soon stops allocating
+  std::vector<Timed> inbox_, sent_;  // They keep their capacity, so that sending soon stops allocating.
   size_t head_ = 0;
 };
 
-// Is a part of the machine with its own state, such as a core with its L1 and RT unit, or a memory partition.
+// Simulates a part of the machine with its own state, such as a core with its L1 and RT unit, or a memory
+// partition.
 class Cell {
  public:
   virtual ~Cell() = default;

@@ -26,18 +26,18 @@ class EngineLoop {
     Cycle turn = 32;             // cycles of a turn, at most the shortest latency of the channels
     bool no_skip = false;        // True: the loop visits every turn. Cells have a switch of their own.
     Cycle watchdog = 1'000'000;  // cycles without progress of any cell before the machine counts as stuck
-    // Number of threads. 0: as many as the host has processors, in the phases in which they are faster than
-    // one.
+    // This is the number of threads. With 0 there are as many as the host has processors, in the phases in
+    // which they are faster than one.
     uint32_t threads = 1;
-    // Cycles of a window, at most those of a turn. The last window of a turn ends with the turn. 0: a whole
-    // turn.
+    // These are the cycles of a window, at most those of a turn. The last window of a turn ends with the
+    // turn. 0 stands for a whole turn.
     Cycle window = 0;
     std::vector<uint32_t> homes{};  // the threads to which the cells belong (cell_pool.h)
   };
   enum class Next { Continue, NothingMore, Stop };
-  // Is called at the start of each turn, and says how to go on. Continue: more work may be handed out later.
-  // NothingMore: the loop runs until all cells are finished. Stop: the loop ends at once, for instance
-  // because of a fault.
+  // Is called at the start of each turn, and says how to go on. Continue means that more work may be handed
+  // out later. With NothingMore, the loop runs until all cells are finished. With Stop, it ends at once, for
+  // instance because of a fault.
   using Between = std::function<Next(Cycle now)>;
 
   explicit EngineLoop(Options options) : options_(std::move(options)) {}

@@ -15,7 +15,7 @@ namespace glint::exec {
 // Says where the data of each lane lies.
 using LanePlaces = std::array<std::byte*, kLanes>;
 
-// Slot of the first value operand: loads write from slot 0, and stores read after the address.
+// These are the slots of the first value operand: loads write from slot 0, and stores read after the address.
 inline constexpr size_t kLoadFirst = 0, kStoreFirst = 1;
 
 inline uint32_t narrow(const std::byte* from, const isa::Memory& shape) {
@@ -39,7 +39,7 @@ inline isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t
   return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];
 }
 
-template <class Byte>  // const or not
+template <class Byte>  // Byte may be const.
 void load_rows(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
                const std::array<Byte*, kLanes>& from) {
   const uint32_t bytes = row_bytes(shape);

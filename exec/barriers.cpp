@@ -37,7 +37,7 @@ bool is_uniform(const uint32_t* row, LaneMask lanes) {
 }  // namespace
 
 // Model: only whole warps arrive. PTX leaves undefined what a warp does that is divided at a bar.sync
-// (hardware from Volta on counts its threads one by one). Here it is a fault.
+// (hardware from Volta on counts its threads one by one). Here a divided warp is a fault.
 bool Barriers::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const LaneMask exec = warp.regs.exec, live = warp.simt.live();
   const auto kind = BarrierKind(row.detail);

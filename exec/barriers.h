@@ -8,7 +8,7 @@
 
 namespace glint::exec {
 
-// Runs bar.*. One that has to wait leaves `warp.waiting_at_barrier` set, until another warp opens the
+// Runs bar.*. A warp that has to wait keeps `warp.waiting_at_barrier` set, until another warp opens the
 // barrier.
 class Barriers {
  public:

@@ -14,7 +14,7 @@ namespace glint::exec {
 
 struct WarpContext;
 
-// Most threads of a block on every GPU of the last ten years, by PTX and Vulkan.
+// PTX and Vulkan allow at most this many threads in a block, on every GPU of the last ten years.
 inline constexpr uint32_t kMaxBlockThreads = 1024;
 inline constexpr uint32_t kMaxBlockWarps = kMaxBlockThreads / uint32_t(kLanes);
 
@@ -31,7 +31,7 @@ struct Barrier {
 };
 
 // Holds a block. Choice: ended warps no longer take part in anything, so a barrier of all threads waits only
-// for the others. PTX leaves it open, and hardware does so.
+// for the others. PTX leaves this open, and hardware does the same.
 class Block {
  public:
   void start(uint32_t index, std::array<uint32_t, 3> id, uint32_t num_warps, uint32_t shared_bytes);

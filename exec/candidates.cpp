@@ -21,7 +21,7 @@ void Candidates::present(WarpContext& warp, LaneMask gathered) const {
   world_.any_hit->present(warp.rays, gathered, [&](int lane, const rt::Candidate& candidate) {
     uint32_t record = 0;
     const HitGroup* group = hit_group(world_, warp.rays[lane].ray, candidate.hit, record);
-    if (!group) return kNoShader;  // ShaderCalls reports this
+    if (!group) return kNoShader;  // ShaderCalls reports this.
     return candidate.is_procedural ? group->intersection : group->any_hit;
   });
 }

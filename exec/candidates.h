@@ -10,10 +10,10 @@ namespace glint::exec {
 
 // Counts what intersection and any-hit shaders had to do.
 struct CandidateCounts {
-  // Calls of such shaders, counted once per warp and shader, and the lanes that made them.
+  // Count the calls of such shaders, once per warp and shader, and the lanes that made them.
   uint64_t calls = 0, lanes = 0;
-  // Candidates of ended traces (rtunit/traversal/candidate_table.h), and the number of times that a ray
-  // stopped because its table was full.
+  // Count the candidates of ended traces (rtunit/traversal/candidate_table.h), and how often a ray stopped
+  // because its table was full.
   uint64_t gathered = 0, dropped = 0, overflows = 0;
 };
 

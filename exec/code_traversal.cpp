@@ -135,9 +135,9 @@ uint32_t CodeTraversal::record_of_rays(const WarpContext& warp) const {
   return code.first_record + index * code.record_bytes();
 }
 
-// Handles the rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that
-// travel. When none travels, they go on waiting, and the machine finishes them. Model: the ray goes to its
-// record, and so does the verdict of an any-hit shader, without instructions of their own.
+// Handles the rays of rt.trace, rt.resume or rq.proceed at `pc`: it calls the traversal program for those
+// that travel. When none travels, the lanes go on waiting, and the machine finishes their rays. Model: the
+// ray goes to its record, and so does the verdict of an any-hit shader, without instructions of their own.
 void CodeTraversal::walk(WarpContext& warp, uint32_t pc) {
   LaneMask travelling = 0;
   for_each_lane(warp.ray_lanes, [&](int lane) {

@@ -14,8 +14,8 @@ class CodeTraversal {
       : world_(world), rays_(rays), calls_(calls) {}
 
   bool is_used() const { return world_.traversal.shader != kNoShader; }
-  // Handles the rays of rt.trace, rt.resume or rq.proceed at `pc`: calls the traversal program for those that
-  // travel. When none travels, they go on waiting, and the machine finishes them.
+  // Handles the rays of rt.trace, rt.resume or rq.proceed at `pc`: it calls the traversal program for those
+  // that travel. When none travels, the lanes go on waiting, and the machine finishes their rays.
   void walk(WarpContext& warp, uint32_t pc);
   // Takes the rays after the traversal program has returned.
   void take_rays(WarpContext& warp);

@@ -48,8 +48,8 @@ bool Control::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& ro
     case Effect::Terminate:
       return return_from(warp, row.effect);
     case Effect::Fence:
-      // Every access has its effect when it is executed, in one order for all, so a fence has nothing to wait
-      // for but time.
+      // Every access has its effect when it is executed, in one order for all, so a fence takes time but has
+      // nothing else to do.
       ++simt.pc;
       return true;
     default:
@@ -128,8 +128,8 @@ bool Control::call_function(WarpContext& warp, uint32_t target) {
   return true;
 }
 
-// Returns from a call. ret goes back to the innermost call; out of a shader, it decides what the stage has to
-// decide. rt.ignore and rt.terminate leave the shader, out of all functions.
+// Returns from a call. ret goes back to the innermost call; out of a shader, it makes the decision of the
+// shader's stage. rt.ignore and rt.terminate leave the shader, out of all functions.
 bool Control::return_from(WarpContext& warp, Effect effect) {
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;

@@ -63,7 +63,7 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
   } else {
     ok = dispatch(warp, inst, row);
   }
-  issued.lanes = warp.regs.exec;  // ray effects leave out lanes that had nothing to do
+  issued.lanes = warp.regs.exec;  // Ray effects leave out lanes that had nothing to do.
   if (warp.waiting_for_rays && traversal_.is_used() && ok) traversal_.walk(warp, pc);
   issued.finished = warp.simt.finished();
   if (ok && issued.finished) [[unlikely]]

@@ -54,7 +54,7 @@ class Executor {
 
   // `clock_mhz` turns cycles into the time that programs read. With 0 they read 0.
   explicit Executor(const World& world, double clock_mhz = 0.0);
-  Executor(const Executor&) = delete;  // the families refer to each other
+  Executor(const Executor&) = delete;  // The families refer to each other.
   Executor& operator=(const Executor&) = delete;
 
   uint32_t num_blocks() const { return exec::num_blocks(world_); }
@@ -100,8 +100,8 @@ class Executor {
   void use(MemoryView* view) { seen_.use(view); }
   // Returns whether the last load or atomic writes its registers only when the view is committed.
   bool is_late() const { return seen_.is_late(); }
-  // Returns a number that grows with every store outside of a view and every atomic there that has changed
-  // something, mostly in shared memory.
+  // Returns a number that grows with every store outside of a view, and with every atomic outside of a view
+  // that has changed something. Most of these are in shared memory.
   uint64_t changes() const { return memory_.changes(); }
 
   const World& world() const { return world_; }
@@ -111,7 +111,7 @@ class Executor {
   bool is_in_trace(WarpContext& warp, const isa::OpRow& row);
 
   const World& world_;
-  const bool reads_clock_;  // a shader does, so its rows are filled before each instruction
+  const bool reads_clock_;  // Some shader does, so its rows are filled before each instruction.
   const double clock_mhz_;
   CandidateCounts candidate_counts_;
   FaultGate faults_;

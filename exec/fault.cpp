@@ -1,4 +1,4 @@
-// Words and collects faults.
+// Puts faults into words and collects them.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/fault.h"
 

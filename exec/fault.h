@@ -15,8 +15,8 @@
 
 namespace glint::exec {
 
-// Says what a fault does. Stop: the first fault ends the run. Warn: what FaultKind names is noted, and the
-// run goes on as docs/errors.md says.
+// Says what a fault does. With Stop, the first fault ends the run. With Warn, faults that FaultKind names are
+// noted, and the run goes on as docs/errors.md says.
 enum class OnFault : uint8_t { Stop, Warn };
 constexpr std::string_view name_of(OnFault on_fault) {
   return on_fault == OnFault::Stop ? "stop" : "warn";
@@ -67,7 +67,7 @@ class FaultLog {
   bool empty() const { return entries_.empty(); }
   uint64_t count(FaultKind kind) const;
   std::vector<Entry> in_order() const;  // ordered by launch index
-  // Returns all of them and their number, for people, or "" when there are none.
+  // Returns all of them and their number as text, or "" when there are none.
   std::string to_string() const;
   // Returns the message of a fault that ends the run, after those that were let pass before.
   std::string with(const Fault& last) const;
@@ -76,8 +76,8 @@ class FaultLog {
   std::map<std::pair<uint32_t, FaultKind>, Entry> entries_;
 };
 
-// Returns "byte 64 of 'Vertices' (1200 bytes)", or how far outside of which allocation an address is, or that
-// nothing is bound to it.
+// Returns text such as "byte 64 of 'Vertices' (1200 bytes)". It also says how far outside of which allocation
+// an address is, or that nothing is bound to it.
 std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64_t bytes);
 
 }  // namespace glint::exec

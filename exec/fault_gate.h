@@ -33,7 +33,7 @@ class FaultGate {
   FaultLog passed_;
 };
 
-// Returns the fault of a warp that has run for longer than any real one, at the instruction `pc`.
+// Returns the fault of a warp that has run for longer than any real program, at the instruction `pc`.
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget);
 
 }  // namespace glint::exec

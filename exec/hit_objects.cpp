@@ -65,7 +65,7 @@ Address find_instance(const mem::AddressSpace& memory, const rt::NodeFormat& for
   return 0;
 }
 
-// Does the same for a whole structure. Returns 0 also for what is not a top-level structure.
+// Does the same for a whole structure. It also returns 0 for what is not a top-level structure.
 Address find_instance(const mem::AddressSpace& memory, Address structure, uint32_t instance) {
   rt::StructureHeader header;
   const auto* bytes = memory.find(structure, sizeof header);
@@ -121,7 +121,7 @@ bool HitObjects::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
       case HitObjectOp::SetTime:
       case HitObjectOp::GetTime:
       case HitObjectOp::Corner:
-        break;  // handled above
+        break;  // These were handled above.
       case HitObjectOp::Attributes:
         store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object);
         break;
@@ -278,7 +278,7 @@ bool HitObjects::begin_trace(WarpContext& warp, const isa::Inst& inst) {
     rt::RayState& state = warp.frame().ray[size_t(lane)];
     warp.frame().time[size_t(lane)] = object.time;
     state.ray = object.ray;
-    state.ray.sbt_offset = state.ray.sbt_stride = 0;  // the record is already known
+    state.ray.sbt_offset = state.ray.sbt_stride = 0;  // The record is already known.
     state.ray.miss_index = object.record;
     state.committed = object.hit;
     state.committed.sbt_record = object.record;

@@ -1,4 +1,5 @@
-// Runs ho.*. A hit object keeps what a ray has found or a shader has made up until its shader is executed.
+// Runs ho.*. A hit object keeps what a ray has found, or what a shader has made up, until its shader is
+// executed.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

@@ -34,7 +34,7 @@ struct Shader {
   uint32_t local_bytes = 0;
   isa::SpecialSet specials_used;
   std::vector<isa::ParsedMessage> messages;  // messages of print and print.part, by number
-  // The shader reads %payload or what follows it, and %object.origin or what follows it.
+  // They say that the shader reads %payload or what follows it, and %object.origin or what follows it.
   bool uses_ray = false, uses_matrices = false;
 };
 
@@ -107,9 +107,9 @@ struct World {
   std::vector<uint32_t> callable;
   BindingTable table;
   std::array<uint32_t, 3> launch_size{1, 1, 1};  // number of threads
-  // Threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in each direction.
-  // With zeros the launch has no blocks, and each warp is a block of its own (ray generation); `layout` says
-  // which threads it has.
+  // These are the threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in
+  // each direction. With zeros the launch has no blocks, and each warp is a block of its own (ray
+  // generation); `layout` says which threads it has.
   std::array<uint32_t, 3> block_size{0, 0, 0};
   std::shared_ptr<const WarpLayout> layout;       // null: linear
   uint32_t shared_bytes = 0;                      // shared memory of a block
@@ -119,12 +119,12 @@ struct World {
   TraversalCode traversal;                        // empty: the RT unit walks rays
   uint32_t local_bytes = 0;                       // bytes of a lane's stack and of what `traversal` needs
   uint32_t max_trace_depth = 1;                   // nested rt.trace (Vulkan's recursion depth)
-  // Nested executeCallableEXT. Choice: Vulkan only limits the stack's bytes.
+  // This many executeCallableEXT can be nested. Choice: Vulkan only limits the stack's bytes.
   uint32_t max_callable_depth = 31;
 };
 
-// Return the bytes of a table of records without data, and put it at `base`: ray generation, miss, hit,
-// callable.
+// Return the bytes of a binding table whose records have no data, and put that table at `base`. Its order is
+// ray generation, miss, hit, callable.
 uint64_t plain_table_bytes(const World& world);
 void place_plain_table(World& world, Address base);
 

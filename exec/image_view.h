@@ -32,7 +32,7 @@ struct Sampler {
   float lod_bias = 0.0f, min_lod = 0.0f, max_lod = 1000.0f;
   bool unnormalized = false;  // coordinates count texels, and only level 0 is read
   Comparison compare = Comparison::Never;
-  std::string unbound{};  // not empty: nobody bound it, and this names the place
+  std::string unbound{};  // Not empty: nobody bound the sampler, and this names the place.
 };
 
 struct TexelIndex {

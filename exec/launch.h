@@ -8,7 +8,8 @@
 
 namespace glint::exec {
 
-// Says where a machine has put a warp, as the warp's program may ask: %warpid, %nwarpid, %smid, %nsmid.
+// Says where a machine has put a warp, as the warp's program may ask with %warpid, %nwarpid, %smid and
+// %nsmid.
 struct Seat {
   uint32_t slot = 0, slots = 1;  // the warp slot of the core, and how many slots the core has
   uint32_t core = 0, cores = 1;
@@ -24,8 +25,8 @@ std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int l
 // Empties `block` for block `index` of the launch: shared memory is zeroed, and no warp has arrived anywhere.
 // Blocks are numbered x fastest, unless the layout says otherwise.
 void start_block(const World& world, Block& block, uint32_t index);
-// Puts a warp of the block into `warp`, at the entry of the ray generation or compute shader. Neither may
-// move until the warp has ended.
+// Puts a warp of the block into `warp`, at the entry of the ray generation or compute shader. Neither object
+// may move until the warp has ended.
 void start_warp(const World& world, WarpContext& warp, Block& block, uint32_t warp_in_block,
                 const Seat& seat);
 

@@ -90,7 +90,8 @@ bool MemoryOps::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   GLINT_PANIC("{}: no such space", row.name);
 }
 
-// Refuses an access that its space does not have. When it is let pass, it does nothing and answers 0.
+// Refuses an access of a kind that its space does not have. When the access is let pass, it does nothing and
+// answers 0.
 bool MemoryOps::refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
                        LaneMask lanes, const std::string& why) {
   for (LaneMask rest = lanes; rest; rest &= rest - 1)

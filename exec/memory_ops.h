@@ -25,8 +25,8 @@ class MemoryOps {
   // address of the space, also for generic accesses. Lanes whose access was let pass and went nowhere are
   // left out.
   LaneMask lanes_in(isa::Space space) const { return lanes_in_[size_t(space)]; }
-  // Returns a number that grows with every store outside of a view and every atomic there that has changed
-  // something, mostly in shared memory.
+  // Returns a number that grows with every store outside of a view, and with every atomic outside of a view
+  // that has changed something. Most of these are in shared memory.
   uint64_t changes() const { return changes_; }
 
  private:

@@ -73,8 +73,8 @@ const MemoryView::Line* MemoryView::find(const std::byte* place) const {
   }
 }
 
-// Returns the core's copy of a line. Memory does not change within a turn, so a copy taken now is as good as
-// one of its beginning.
+// Returns the core's copy of a line. Memory does not change within a turn, so a copy that is taken now equals
+// one from the turn's beginning.
 MemoryView::Line& MemoryView::line_of(std::byte* place) {
   if (!lines_.empty() && lines_.back().place == place) return lines_.back();
   if (const Line* line = find(place)) return lines_[size_t(line - lines_.data())];
@@ -102,7 +102,7 @@ void MemoryView::store(std::byte* at, const void* from, uint32_t bytes) {
   for_each_part(at, bytes, [&](std::byte* place, uint32_t offset, uint32_t done, uint32_t count) {
     Line& line = line_of(place);
     std::memcpy(line.data.data() + offset, source + done, count);
-    line.waits &= ~mask_of(offset, count);  // whoever reads here from now on reads what was stored
+    line.waits &= ~mask_of(offset, count);  // Whoever reads here from now on reads what was stored.
   });
   for (uint32_t done = 0; done < bytes;) {
     Store& store = stores_.emplace_back();
@@ -183,13 +183,13 @@ void MemoryView::clear() {
   texels_.clear();
   lines_.clear();
   next_ = 0;
-  if (++turn_ == 0) {  // after 2^32 turns, old stamps could be taken for new ones
+  if (++turn_ == 0) {  // After 2^32 turns, old stamps could be taken for new ones.
     std::fill(slots_.begin(), slots_.end(), Slot{});
     turn_ = 1;
   }
 }
 
-// The views are few and their batches are in order, so the earliest of all is at one of their heads.
+// The views are few and their batches are in order, so the earliest batch of all is at one of their heads.
 bool MemoryView::commit(std::span<MemoryView* const> views) {
   bool changed = false;
   for (;;) {

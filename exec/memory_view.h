@@ -17,11 +17,12 @@ namespace glint::exec {
 // Holds what one core does to global memory in a turn. Cores run a turn apart from each other
 // (engine/engine_loop.h), so within a turn no core may see what another one does. A core's stores go to
 // copies of the lines that they touch and into a list; atomics go only into the list. Between turns, commit()
-// does what the lists of all cores say, in order of cycle, then core.
-// So other cores see a store some tens of cycles after its issue, which is sooner than it could reach the L2,
-// and everything that happened to memory has one order that does not depend on how the machine is run. An
-// atomic's old value comes with commit(), and so does a load of bytes that an atomic of the same turn
-// changes: their registers are written then. The core ensures that nobody reads them before.
+// does what the lists of all cores say, in order of cycle, then core. So other cores see a store some tens of
+// cycles after its issue, which is sooner than it could reach the L2. Everything that happened to memory has
+// one order, which does not depend on how the machine is run.
+//
+// An atomic's old value comes with commit(), and so does a load of bytes that an atomic of the same turn
+// changes: their registers are written then. The core ensures that nobody reads these registers before.
 // Model: textures, acceleration structures and binding tables are read as they were before the turn.
 class MemoryView {
  public:
@@ -52,7 +53,7 @@ class MemoryView {
   void begin(Cycle now);
   void store(std::byte* at, const void* from, uint32_t bytes);
   void modify(const Modify& modify);
-  void load(const Load& load);  // takes place with commit()
+  void load(const Load& load);  // It takes place with commit().
   void load(const LoadTexel& load);
 
   // Returns whether this core has written in this turn, so that reads have to ask.
@@ -99,8 +100,8 @@ class MemoryView {
   std::vector<Modify> modifies_;
   std::vector<Load> loads_;
   std::vector<LoadTexel> texels_;
-  // Capacities are kept, so that a warm view allocates nothing. Slots hold a line's number + 1 and count only
-  // if they are of this turn.
+  // Capacities are kept, so that a warm view allocates nothing. A slot holds a line's number + 1, and counts
+  // only if it is of this turn.
   struct Slot {
     uint32_t turn = 0, line = 0;
   };

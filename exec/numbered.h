@@ -17,7 +17,7 @@ namespace glint::exec {
 std::optional<uint32_t> shared_number(FaultGate& faults, const WarpContext& warp, isa::Slot operand,
                                       std::string_view what);
 
-// Returns the objects of a level of traces, one per lane, that all executing lanes name, or null after a
+// Returns the objects that all executing lanes name, one per lane, of a level of traces. Returns null after a
 // fault.
 template <class Object>
 Object* find_numbered(FaultGate& faults, WarpContext& warp, Numbered<Object>& objects, isa::Slot operand,

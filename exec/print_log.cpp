@@ -8,8 +8,8 @@
 
 namespace glint::exec {
 
-// Returns whether a line has room. A full log stays full, and the last of its threads only comes nearer, so a
-// line that has no room now will never have it.
+// Returns whether a line has room. A full log stays full, and the last thread in it can only be replaced by
+// an earlier one. So a line that has no room now will never have it.
 bool PrintLog::has_room(uint64_t thread) const {
   return kept_ < limit_ || (!lines_.empty() && thread < std::prev(lines_.end())->first);
 }

@@ -1,4 +1,5 @@
-// Collects what the shaders of a launch print, by launch id and then as each thread goes, whenever they ran.
+// Collects what the shaders of a launch print. Lines are ordered by launch id and then as each thread printed
+// them, whenever the threads ran.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -9,8 +10,8 @@
 
 namespace glint::exec {
 
-// Keeps the first `limit` lines in that order and counts the others. Any number of threads may add at once:
-// what is kept does not depend on who comes first, as long as each launch id adds its own lines in order.
+// Keeps the first `limit` lines in that order and counts the others. Any number of threads may add at once.
+// What is kept does not depend on who comes first, as long as each launch id adds its own lines in order.
 class PrintLog {
  public:
   explicit PrintLog(uint64_t limit = 1000) : limit_(limit) {}

@@ -1,4 +1,4 @@
-// Words the mistakes of programs that trace rays.
+// Puts the mistakes of programs that trace rays into words.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/ray_faults.h"
 

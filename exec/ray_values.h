@@ -31,7 +31,7 @@ inline Address read_address(const isa::Warp& regs, const isa::Inst& inst, size_t
                                                     << 32;
 }
 
-// Number of operands of a ray: origin, tmin, direction, tmax.
+// This is the number of operands of a ray: origin, tmin, direction, tmax.
 inline constexpr size_t kRayOperands = 8;
 inline void read_ray(const isa::Warp& regs, const isa::Inst& inst, size_t first, int lane, rt::Ray& ray) {
   const auto value = [&](size_t i) { return as_float(read_word(regs, inst, first + i, lane)); };

@@ -1,4 +1,4 @@
-// Loads, stores and modifies global memory that is seen through a view.
+// Loads from, stores to and modifies global memory that is seen through a view.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/seen_memory.h"
 

@@ -57,7 +57,7 @@ bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
   return true;
 }
 
-// Handles a record that calls nothing like a null group: a candidate of triangles is taken, and one of boxes
+// Handles a record that calls nothing like a null group: a candidate triangle is taken, and a candidate box
 // reports nothing. Choice: a record outside of the table that is let pass costs what the region's first
 // record costs.
 void ShaderCalls::call_nothing(WarpContext& warp, int lane, rt::RayState& state, Effect effect) {
@@ -79,12 +79,12 @@ bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint
     rt::RayState& state = warp.frame().ray[i];
     if (state.broken && !ray_faults_.let_pass_broken(warp, lane, state)) [[unlikely]]
       return false;
-    if (state.status == RayStatus::Idle) {  // an empty hit object
+    if (state.status == RayStatus::Idle) {  // The hit object is empty.
       target[i] = kNoShader;
       continue;
     }
     if (state.status == RayStatus::Gathered &&
-        effect != Effect::CallHit) {  // it runs nothing this time and reads no record
+        effect != Effect::CallHit) {  // It runs nothing this time and reads no record.
       target[i] = kNoShader;
       warp.regs.exec &= ~(LaneMask{1} << lane);
       continue;

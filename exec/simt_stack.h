@@ -28,8 +28,8 @@ class SimtStack {
     uint32_t depth = 0;         // Call: trace depth to return to
     uint32_t shader = 0;        // Call: the caller's shader
     uint32_t callables = 0;     // Call: callable depth to return to
-    bool is_function = false;   // Call: it is of a function of the same shader, not of another shader
-    bool is_traversal = false;  // Call: it is of the program that walks rays
+    bool is_function = false;   // Call: of a function of the same shader, not of another shader
+    bool is_traversal = false;  // Call: of the program that walks rays
   };
 
   uint32_t pc = 0;
@@ -85,8 +85,8 @@ class SimtStack {
     return lanes;
   }
 
-  // Takes entries while no lanes run, until some run or the stack is empty. When a Call entry resumed,
-  // returns true and puts it into *resumed_call.
+  // Takes entries while no lanes run, until some run or the stack is empty. When a Call entry resumed, it
+  // returns true and puts the entry into *resumed_call.
   bool resume_next(Entry* resumed_call) {
     bool resumed = false;
     while (active == 0 && !entries_.empty()) {
@@ -94,7 +94,7 @@ class SimtStack {
       entries_.pop_back();
       active = top.lanes;
       pc = top.kind == Kind::Join ? top.pc + 1 : top.pc;
-      if (top.kind == Kind::Call) {  // even with no lanes left, its context is the caller's again
+      if (top.kind == Kind::Call) {  // Even with no lanes left, its context is the caller's again.
         *resumed_call = top;
         resumed = true;
       }
@@ -106,7 +106,7 @@ class SimtStack {
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
-  std::vector<Entry> entries_;  // grows once to the program's nesting, then allocates nothing
+  std::vector<Entry> entries_;  // It grows once to the program's nesting, then allocates nothing.
 };
 
 }  // namespace glint::exec

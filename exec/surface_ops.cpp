@@ -86,8 +86,8 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
     if (!place[size_t(lane)] && faults_.fault()) return false;
   }
   if (seen_.is_used()) return run_seen(warp, inst, row, place), true;
-  // Lanes run one by one: atomics take turns, and of stores to one texel the highest lane's stays. Choice:
-  // PTX leaves it open.
+  // Lanes run one by one: atomics take turns, and when several lanes store to one texel, the store of the
+  // highest lane stays. Choice: PTX leaves it open.
   for_each_lane(warp.regs.exec, [&](int lane) {
     const ImageLane operands(warp.regs, inst, lane);
     std::byte* const at = place[size_t(lane)];
@@ -116,7 +116,7 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
   return true;
 }
 
-// Does what run() does when the image is seen through a view. A lane without a place loads 0.
+// Does what run() does when the image is seen through a view. A lane that names no texel loads 0.
 void SurfaceOps::run_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
                           const LanePlaces& place) {
   const ImageSlots slots(row);

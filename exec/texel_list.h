@@ -9,14 +9,14 @@
 
 namespace glint::exec {
 
-// The most texels of one lane are those of a linear filter in three dimensions of two levels.
+// The most texels of one lane are those of a linear filter in three dimensions on two levels.
 inline constexpr uint32_t kMaxTexels = 16;
 
 // Holds virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A
 // texel is aligned to its size, so it lies in one sector.
 class TexelList {
  public:
-  static constexpr Address kNone = 0;  // no allocation holds address 0
+  static constexpr Address kNone = 0;  // No allocation holds address 0.
   void clear() { count_ = 0; }
   void add(int lane, std::span<const Address> texels) {
     for (size_t k = 0; k < texels.size(); ++k) {

@@ -70,7 +70,7 @@ double tame(Wrap mode, float x, uint32_t size) {
   if (std::isnan(x)) return 0.0;
   if (std::fabs(x) < kFar) return x;
   if (std::isinf(x) || (mode != Wrap::Repeat && mode != Wrap::MirroredRepeat)) return std::copysign(kFar, x);
-  return std::fmod(double(x), 2.0 * size);  // this is exact
+  return std::fmod(double(x), 2.0 * size);  // This is exact.
 }
 
 CubePoint cube_point(const std::array<float, 3>& direction) {
@@ -109,7 +109,7 @@ float level_of_detail(const ImageView& image, int count, const Gradient& dx, con
   const double squared = std::max(x, y);
   if (std::isinf(squared)) return std::numeric_limits<float>::infinity();
   if (!(squared > 0.0))
-    return -std::numeric_limits<float>::infinity();  // there is no footprint, or it is not a number
+    return -std::numeric_limits<float>::infinity();  // There is no footprint, or it is not a number.
   return float(0.5 * log2_of(squared));
 }
 

@@ -51,7 +51,8 @@ Levels levels_of(const ImageView& image, const Sampler& sampler, float lod) {
   if (image.levels == 1) return {};
   const auto last = float(image.levels - 1);
   const float d = lod > 0.0f ? std::min(lod, last) : 0.0f;
-  // By Vulkan's "Image Level(s) Selection", the nearest level is taken, and the finer one from the middle.
+  // By Vulkan's "Image Level(s) Selection", the nearest level is taken. Exactly between two levels, the finer
+  // one is taken.
   if (sampler.mip == Filter::Nearest) {
     const auto level = uint32_t(std::max(std::ceil(d + 0.5f) - 1.0f, 0.0f));
     return {level, level, 0.0f};
@@ -144,8 +145,8 @@ void TexelReader::read_block(const SampleRequest& request, const Place& place, u
       out[k] = read(request, place, level, at);
   }
   if (corner == 8) return;
-  // Where three faces meet there is no fourth texel. It is the average of the three (Vulkan, "Cube Map Edge
-  // Handling") or, for integers, a neighbour.
+  // Where three faces meet there is no fourth texel. Its value is the average of the three (Vulkan, "Cube Map
+  // Edge Handling") or, for integers, a neighbour.
   if (is_integer(info_of(image_.format))) {
     out[corner] = out[corner ^ 1];
     return;
@@ -177,7 +178,7 @@ Words TexelReader::filter(const SampleRequest& request, const Place& place, uint
 Words TexelReader::sample(const SampleRequest& request) {
   const Place place = place_of(request);
   const float biased = request.lod + sampler_.lod_bias;
-  // By Vulkan's "LOD", not-a-number counts as the smallest value.
+  // By Vulkan's "LOD", a value that is not a number counts as the smallest value.
   const float lod = std::min(biased > sampler_.min_lod ? biased : sampler_.min_lod, sampler_.max_lod);
   const Filter filter_kind = lod > 0.0f ? sampler_.min : sampler_.mag;
   const Levels levels = sampler_.unnormalized ? Levels{} : levels_of(image_, sampler_, lod);

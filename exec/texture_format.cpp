@@ -16,7 +16,7 @@ namespace {
 using F = TexelFormat;
 using enum Numeric;
 
-// These are the orders of cl.h.
+// These are the channel orders of cl.h.
 constexpr uint16_t kR = 0x10b0, kRg = 0x10b2, kRgb = 0x10b4, kRgba = 0x10b5, kBgra = 0x10b6, kSrgba = 0x10c1,
                    kSbgra = 0x10c2;
 
@@ -70,7 +70,7 @@ static_assert(std::size(kFormats) == size_t(F::Count));
 uint32_t bits_of(float x) {
   return std::bit_cast<uint32_t>(x);
 }
-// The floats have 5 exponent bits, bias 15, and no sign: halves, and the channels of 11 and 10 bits.
+// These floats have 5 exponent bits, bias 15, and no sign: halves, and the channels of 11 and 10 bits.
 constexpr int kBias = 15;
 float from_small(uint32_t bits, int mantissa_bits) {
   const uint32_t mantissa = bits & ((1u << mantissa_bits) - 1);
@@ -80,11 +80,11 @@ float from_small(uint32_t bits, int mantissa_bits) {
   return std::ldexp(float(mantissa | 1u << mantissa_bits), exponent - kBias - mantissa_bits);
 }
 
-// Rounds to nearest even. What is too large becomes `largest`. `magnitude` is not NaN.
+// Rounds to nearest even. A magnitude that is too large becomes `largest`. `magnitude` is not NaN.
 uint32_t to_small(float magnitude, int mantissa_bits, uint32_t largest) {
   if (magnitude >= 65536.0f) return std::isinf(magnitude) ? 31u << mantissa_bits : largest;
   const int exponent = std::max(magnitude == 0.0f ? -126 : std::ilogb(magnitude), 1 - kBias);
-  // The units are those of the last place. A carry out of the mantissa increases the exponent by itself.
+  // `units` counts units of the last place. A carry out of the mantissa increases the exponent by itself.
   const auto units = uint32_t(std::nearbyint(std::ldexp(double(magnitude), mantissa_bits - exponent)));
   const uint32_t bits = units + (uint32_t(exponent + kBias - 1) << mantissa_bits);
   return bits >= 31u << mantissa_bits ? largest : bits;

@@ -81,7 +81,7 @@ inline bool is_normalized(const FormatInfo& info) {
   return !is_integer(info) && info.numeric != Numeric::Float;
 }
 
-// Holds red, green, blue, alpha: bits of floats, or integers when the format has them.
+// Holds red, green, blue and alpha. They are the bits of floats, or integers when the format has integers.
 using Words = std::array<uint32_t, 4>;
 
 // Returns the words of a texel. Channels that a format lacks are 0, and alpha is 1 (Vulkan, "Conversion to

@@ -44,7 +44,7 @@ uint32_t answer(const isa::ImageAccess& op, const ImageView& image, const Sample
 bool TextureOps::read(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   const isa::ImageAccess& op = row.image;
   const ImageSlots slots(row);
-  std::array<Words, kLanes> result;  // written when no lane can fault any more
+  std::array<Words, kLanes> result;  // It is written when no lane can fault any more.
   const auto pass = [&](int lane, const auto& what) {
     return faults_.let_pass(warp, lane, FaultKind::Image, what);
   };

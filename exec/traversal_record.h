@@ -14,7 +14,7 @@ inline constexpr uint32_t kOrigin = 0, kTmin = 3, kDirection = 4, kTmax = 7, kFl
                           kCandidate = 28, kStack = 36;
 }
 
-// Says what a walk ends with (traversal_word::kStatus).
+// Says how a walk ends (traversal_word::kStatus).
 enum class WalkStatus : uint32_t { Done, NeedsAnyHit, NeedsIntersection, NeedsIntersectionOpaque, Broken };
 
 // Says how a launch's rays are walked without an RT unit. Each level of rt.trace, and each ray query of each

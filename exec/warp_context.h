@@ -35,7 +35,7 @@ inline constexpr uint32_t kAttributeBytes = 64;
 // shader's objects do not disturb its caller's. They are made when first used.
 template <class Object>
 using Numbered = std::vector<std::unique_ptr<std::array<Object, kLanes>>>;
-// Number of objects of a kind and level. Choice: neither Vulkan nor the extension sets a limit.
+// This is the number of objects of a kind and level. Choice: neither Vulkan nor the extension sets a limit.
 inline constexpr uint32_t kMaxNumbered = 16;
 
 // Holds what a ray found, as a shader keeps it (SPV_NV_shader_invocation_reorder).
@@ -59,19 +59,20 @@ struct WarpContext {
   uint32_t callables = 0;  // open call.sbt.callable levels
   std::vector<std::unique_ptr<CallableFrame>> callable_frames;  // like `frames`
   Numbered<HitObject> hit_objects;
-  // Time of the next ray. Model: nothing moves; shaders read the value back.
+  // This is the time of the next ray. Model: nothing moves; shaders read the value back.
   std::array<uint32_t, kLanes> next_time{};
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   Numbered<rt::RayState> queries;
   std::vector<uint32_t> local;    // [word][lane]
-  uint64_t instructions = 0;      // retired since start, for the instruction budget
-  bool waiting_for_rays = false;  // an rt.trace or rt.resume has not been finished
+  uint64_t instructions = 0;      // instructions retired since the start, for the instruction budget
+  bool waiting_for_rays = false;  // An rt.trace or rt.resume has not been finished.
   LaneMask ray_lanes = 0;         // lanes that it handed over
   rt::RayState* rays = nullptr;   // one per lane, in `frames` or `queries`
   isa::Slot ray_answer = 0;       // predicate that receives the answer
-  LaneMask walking = 0;           // those of ray_lanes whose rays World::traversal walks
+  LaneMask walking = 0;           // the lanes of ray_lanes whose rays World::traversal walks
 
-  bool waiting_at_barrier = false;  // executes nothing until another warp of the block has opened the barrier
+  // The warp executes nothing until another warp of the block has opened the barrier.
+  bool waiting_at_barrier = false;
   uint32_t barrier = 0, barrier_pc = 0;  // then: the barrier, and the instruction that waits
   LaneMask barrier_lanes = 0;
 

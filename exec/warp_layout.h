@@ -1,4 +1,5 @@
-// Interface: says which threads of a launch form a warp, and in which order warps or blocks start.
+// Declares the interface of the policies that choose which threads of a launch form a warp, and in which
+// order warps or blocks start.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -17,6 +18,7 @@ namespace glint::exec {
 //  - nth() gives each n below columns * rows another place of that grid.
 //  - All three are functions of their arguments only: results of a launch never depend on when they are
 //    called.
+//
 // Tiles apply to launches without blocks. Model: the warps of a block are its consecutive threads under every
 // layout, as PTX has it and drivers do for Vulkan; for a launch with blocks the layout only orders the
 // blocks. Choice: a launch with fewer rows than a tile is laid out by consecutive launch indices, so that its

@@ -1,4 +1,4 @@
-// Holds the times `by_unit`: every op has the latency and the interval of its unit.
+// Implements the op times `by_unit`: every op has the latency and the interval of its unit.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,5 @@
-// Holds the times `hopper`: those of an H200's ops that differ from their unit, by microbenchmarks.
+// Implements the op times `hopper`: an H200's times of the ops that differ from their unit, by
+// microbenchmarks.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 
@@ -11,9 +12,9 @@ using isa::Unit;
 
 // Source: dependent chains, and 32 warps of independent chains, on an NVIDIA H200 (1980 MHz), of PTX ops as
 // its assembler translates them. Intervals are 32 lanes x 4 schedulers over the lane operations that a core
-// did per cycle. Latencies of steps of two ops are split by the latencies that the other op has alone and by
-// the crossing of pipes (1 cycle). The last number, where there is one, is the number of machine instructions
-// of the op as they execute without a slow path, from the listings that the same measurements took. It is a
+// did per cycle. The latency of a step of two ops is split by the other op's latency on its own and by the
+// crossing of pipes (1 cycle). The last number, where there is one, is the number of machine instructions of
+// the op as they execute without a slow path, from the listings that the same measurements took. It is a
 // guess for divisions of 64 bits, whose listings end at a call. Model: a sequence of instructions holds one
 // pipe for its throughput, whatever pipes its parts run on.
 constexpr OpTime kTimes[] = {
@@ -44,8 +45,8 @@ constexpr OpTime kTimes[] = {
     {"mad.lo.*64", 12, 8, Unit::Fp32, false, 4},
     {"mul.hi.*64", 30, 16, Unit::Fp32, false, 8},
     {"mad.hi.*64", 30, 16, Unit::Fp32, false, 8},  // guess: four wide products
-    // These ops have two instructions each. Of comparisons of 64 bits, the second has the result. 64-bit sums
-    // run on two pipes, and only their issue slots limit them.
+    // These ops have two instructions each. A comparison of 64 bits has its result after the second one.
+    // 64-bit sums run on two pipes, and only their issue slots limit them.
     {"add.s64", 4, 1, Unit::Int, false, 2},
     {"add.u64", 4, 1, Unit::Int, false, 2},
     {"sub.s64", 4, 1, Unit::Int, false, 2},

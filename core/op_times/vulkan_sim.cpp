@@ -1,4 +1,4 @@
-// Holds the times `vulkan_sim`, which are Vulkan-Sim's table of PTX opcodes and the pipeline around it.
+// Implements the op times `vulkan_sim`: Vulkan-Sim's table of PTX opcodes and the pipeline around it.
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
 

@@ -1,4 +1,5 @@
-// Implements the issue policy `cggty`: the warp issued last while it is ready, else the youngest ready warp.
+// Implements the issue policy `cggty`: it takes the warp issued last while that is ready, else the youngest
+// ready warp.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
@@ -10,8 +11,8 @@ namespace glint::core {
 namespace {
 
 // Source: "Analyzing Modern NVIDIA GPU cores", MICRO 2025, section 5.1.2: compiler-guided greedy, then
-// youngest. Model: the compiler guides by stall counts, which the scoreboard's ready times stand for. Its
-// yield bit, which asks for another warp once, does not exist in this ISA.
+// youngest. Model: the compiler guides by stall counts; the ready times of the scoreboard take their place.
+// Its yield bit, which asks for another warp once, does not exist in this ISA.
 class GreedyThenYoungest final : public IssueScheduler {
  public:
   static constexpr std::string_view kName = "cggty";
@@ -24,7 +25,7 @@ class GreedyThenYoungest final : public IssueScheduler {
   GreedyThenYoungest(Params, Context) {}
 
   uint32_t pick(const IssueView& view) override {
-    // A new warp in the same place is not the warp that was issued last.
+    // A new warp in the same slot is not the warp that was issued last.
     if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
     uint32_t youngest = uint32_t(std::countr_zero(view.ready));
     for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {

@@ -1,4 +1,5 @@
-// Implements the issue policy `gto`: the warp issued last while it is ready, else the oldest ready warp.
+// Implements the issue policy `gto`: it takes the warp issued last while that is ready, else the oldest ready
+// warp.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
@@ -22,7 +23,7 @@ class GreedyThenOldest final : public IssueScheduler {
   GreedyThenOldest(Params, Context) {}
 
   uint32_t pick(const IssueView& view) override {
-    // A new warp in the same place is not the warp that was issued last.
+    // A new warp in the same slot is not the warp that was issued last.
     if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
     uint32_t oldest = uint32_t(std::countr_zero(view.ready));
     for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {

@@ -1,4 +1,5 @@
-// Implements the issue policy `lrr`: loose round robin, the next ready warp after the one issued last.
+// Implements the issue policy `lrr` (loose round robin): it takes the next ready warp after the one issued
+// last.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>

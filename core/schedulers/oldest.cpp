@@ -1,4 +1,4 @@
-// Implements the issue policy `oldest`: always the ready warp that was launched first.
+// Implements the issue policy `oldest`: it always takes the ready warp that was launched first.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Implements the warp layout `linear`: 32 consecutive launch indices, warp after warp.
+// Implements the warp layout `linear`: warps are 32 consecutive launch indices, one after the other.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 #include <tuple>
