@@ -1,4 +1,4 @@
-// Lays out records: handle, data, stride, and what each record calls.
+// Lays out the records of the binding table: handle, data, stride, and what each record calls.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/binding_table.h"
 

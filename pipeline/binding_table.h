@@ -20,15 +20,15 @@ struct ShaderGroup {
 };
 
 struct TableRecord {
-  // Index into TableInput::groups. kNoGroup stands for a handle of zeros, which calls nothing.
+  // This is the index into TableInput::groups. kNoGroup stands for a handle of zeros, which calls nothing.
   uint32_t group = kNoGroup;
   std::vector<std::byte> data;  // what the shader's shaderRecordEXT block holds
 };
 
 struct TableRegion {
   std::vector<TableRecord> records;
-  // Bytes from one record to the next. If it is absent, the smallest stride that holds every record is used.
-  // If it is 0, only the first record is used.
+  // These are the bytes from one record to the next. If the value is absent, the smallest stride that holds
+  // every record is used. If it is 0, only the first record is used.
   std::optional<uint32_t> stride;
 };
 

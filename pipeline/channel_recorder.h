@@ -47,7 +47,7 @@ class ChannelRecorder {
   Cycle end_;
   bool works_ = false;
   Cycle since_ = 0;    // the start of the present work, while the channel works
-  uint64_t told_ = 0;  // requests in slices so far, or before the window
+  uint64_t told_ = 0;  // requests that are in slices so far, or came before the window
   std::vector<TraceSlice> slices_;
 };
 

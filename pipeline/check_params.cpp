@@ -22,8 +22,8 @@ void check_cache(const char* key, uint32_t size, uint32_t ways, uint32_t line, D
 }
 
 void check_code(const core::Params& p, uint32_t line, Diagnostics& diagnostics) {
-  if (!std::has_single_bit(line)) return;             // reported already
-  if (p.fetch.perfect && p.constant.perfect) return;  // no part of it is built
+  if (!std::has_single_bit(line)) return;             // It was reported already.
+  if (p.fetch.perfect && p.constant.perfect) return;  // No part of it is built.
   check_cache("core.code_cache.size", p.code_cache.size, p.code_cache.ways, line, diagnostics);
   if (!p.fetch.perfect) check_cache("core.fetch.size", p.fetch.size, p.fetch.ways, line, diagnostics);
   if (p.constant.perfect) return;

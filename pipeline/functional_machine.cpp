@@ -17,7 +17,7 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
   for_each_lane(warp.ray_lanes, [&](int lane) {
     rt::RayState& state = warp.rays[lane];
     const auto nodes = state.nodes_visited, boxes = state.box_tests, triangles = state.triangle_tests;
-    if (nodes == 0) ++counts.rays;  // handed over for the first time, so this ray is not a resumed one
+    if (nodes == 0) ++counts.rays;  // The ray is handed over for the first time, so it is not a resumed one.
     if (state.status == rt::RayStatus::Traversing) rt::run(state, *executor.world().memory);
     counts.nodes += state.nodes_visited - nodes;
     counts.box_tests += state.box_tests - boxes;

@@ -1,4 +1,4 @@
-// Tells warps that spin for ever from a machine at work, by the time since anything came of their work.
+// Tells warps that spin for ever from a machine at work, by the time since their work last had an effect.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace glint::pipeline {
 
-// Looks at the machine between turns. A budget of 0 never ends. Model: registers of warps are not looked at,
-// so a launch that only computes for longer than the budget is taken for one that spins.
+// Looks at the machine between turns. A budget of 0 stands for no limit. Model: registers of warps are not
+// looked at, so a launch that only computes for longer than the budget is taken for one that spins.
 class LivelockWatch {
  public:
   explicit LivelockWatch(uint64_t budget) : budget_(budget) {}

@@ -21,7 +21,7 @@ struct CompilerParams {
   bool schedule = true;
   bool contract = false;
   uint32_t guard_latency = 0;
-  bool queries_call = false;  // has no key, because it follows from GpuParams::rt.unit
+  bool queries_call = false;  // It has no key, because it follows from GpuParams::rt.unit.
   static constexpr auto params() {
     return std::tuple{
         param(&CompilerParams::max_registers, "max_registers", "register",
@@ -62,8 +62,8 @@ struct GpuParams {
 
 namespace glint {
 
-// check_params.cpp has the code of these two: to read and to describe a few hundred keys takes seconds to
-// compile.
+// check_params.cpp has the code of these two, because compiling the reading and describing of a few hundred
+// keys takes seconds.
 extern template void read_params(ConfigTable&, pipeline::GpuParams&);
 extern template std::vector<ParamInfo> describe_params(const pipeline::GpuParams&, const std::string&);
 

@@ -204,7 +204,7 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
   for (const BottomLevelDescription& description : description_.bottom_levels) {
     rt::BottomLevel level;
     std::vector<scenes::Model> models;
-    models.reserve(description.geometries.size());  // geometries point into them
+    models.reserve(description.geometries.size());  // Geometries point into them.
     for (const GeometryDescription& g : description.geometries) {
       rt::Geometry geometry;
       geometry.transform = g.transform, geometry.opaque = g.opaque,

@@ -30,7 +30,7 @@ struct RenderJob {
   scenes::RenderParams frame;
   GpuParams gpu;
   bool timing = true;
-  // True: every cycle is simulated. This is slow and serves to check the skipping.
+  // With true, every cycle is simulated. This is slow and serves to check the skipping.
   bool no_skip = false;
   uint32_t threads = 1;                       // threads of the host for the timing machine (HostOptions)
   StructureCache* structure_cache = nullptr;  // null: every structure is built

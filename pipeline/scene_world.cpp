@@ -83,7 +83,7 @@ SceneWorld::SceneWorld(const RenderJob& job) {
   const std::vector<std::byte> frame = scenes::uniform_block(job.scene, job.workload, job.frame);
   bind(kFrame, upload("binding 3 (frame)", frame.data(), frame.size()), frame.size());
   build_structures(job);
-  mark_all_unbound(world, bound_);  // shaders of a user's folder may ask for more
+  mark_all_unbound(world, bound_);  // Shaders of a user's folder may ask for more.
 }
 
 void SceneWorld::link_shaders(const RenderJob& job) {
@@ -172,7 +172,7 @@ void SceneWorld::build_structures(const RenderJob& job) {
       geometry.positions = std::as_bytes(std::span(model.vertices));
       geometry.stride = sizeof(scenes::Vertex);
       geometry.indices = model.indices;
-      geometry.opaque = false;  // the original sets NO_DUPLICATE_ANY_HIT and not OPAQUE
+      geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
       geometry.no_duplicate_any_hit = true;
       structures.triangles += model.indices.size() / 3;
     }

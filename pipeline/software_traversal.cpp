@@ -69,7 +69,7 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
   const std::string name(kName);
   const std::vector<uint32_t> spirv =
       frontend::glsl_text_to_spirv(traversal_source(), name, isa::Stage::Callable, {});
-  // The program is never contracted, so that every hit has the bits that the RT unit gives it.
+  // The program is never contracted, so every hit has the bits that the RT unit gives it.
   const frontend::BackendOptions backend{gpu.compiler.max_registers, gpu.compiler.schedule, false, false,
                                          gpu.compiler.guard_latency};
   programs.push_back(frontend::compile_module(spirv, name, {}, backend, warnings, cache).program);

@@ -18,7 +18,7 @@ class StructureCache {
     std::string folder;  // empty: nothing is kept
     std::string build;   // identifies the builder; structures of another one are not found
     uint64_t max_bytes = uint64_t{6} << 30;  // limit of the folder's size; all of LumiBench takes 5 GB
-    // Smaller structures are not kept. This many primitives take about 10 ms to build.
+    // Smaller structures are not kept. A structure of this many primitives takes about 10 ms to build.
     uint64_t least_primitives = 16384;
   };
   struct Counts {

@@ -123,8 +123,8 @@ Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress
   return end;
 }
 
-// Reports warps that go on for ever without any effect. Mostly these are spin locks whose holder waits in
-// vain.
+// Throws an error about warps that go on for ever without any effect. Most of these wait for a spin lock
+// whose holder waits, too.
 void TimingMachine::throw_livelock(Cycle now) const {
   std::string message = fmt::format(
       "the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and "

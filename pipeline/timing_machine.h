@@ -22,7 +22,8 @@ namespace glint::pipeline {
 struct HostOptions {
   uint32_t threads = 1;  // 0: as many as the host has processors, while they are faster than one
   Cycle window = 0;      // 0: the longest possible window
-  // The thread of each cell, cores first and then partitions. When empty, cells go to threads in turn.
+  // These are the threads of the cells, cores first and then partitions. When the list is empty, cells go to
+  // threads in turn.
   std::vector<uint32_t> homes{};
 };
 

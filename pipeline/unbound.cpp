@@ -15,8 +15,7 @@ namespace {
 
 using frontend::BindingKind;
 
-// Number of elements of an array that get a place of their own, so that no index into them means another
-// image.
+// This many elements of an array get a place of their own, so that no index into them means another image.
 constexpr uint32_t kMostPlaceholders = 1024;
 
 std::string title(const frontend::Binding& binding) {
@@ -60,7 +59,7 @@ void mark_unbound(exec::World& world, const frontend::Binding& binding) {
       value = world.samplers.size();
       world.samplers.insert(world.samplers.end(), count, unbound_sampler(binding));
       break;
-    case BindingKind::Other: {  // an address whose low half is a number of an image and of a sampler
+    case BindingKind::Other: {  // The address has the number of an image and of a sampler in its low half.
       const size_t number = std::max(world.images.size(), world.samplers.size());
       world.images.resize(number + 1, unbound_image(binding));
       world.samplers.resize(number + 1, unbound_sampler(binding));

@@ -11,7 +11,7 @@
 namespace glint::scenes {
 namespace {
 
-constexpr double kNear = 0.1, kFar = 10000;  // the planes of LumiBench's application
+constexpr double kNear = 0.1, kFar = 10000;  // planes of LumiBench's application
 constexpr float kHeatmapScale = 1.5f;        // the application's default; no shader of the workloads reads it
 constexpr uint32_t kDefaultSecondaryRays = 16;  // the application's default number of shadow rays
 
@@ -32,7 +32,7 @@ CameraMatrices camera_matrices(const Camera& camera, float aspect) {
   m.model_view[3] = {-dot(right, camera.eye), -dot(up, camera.eye), -dot(back, camera.eye), 1};
   m.model_view_inverse[3] = Vec4(camera.eye, 1);
 
-  // The inverses are written down, not computed, because the view is rigid and the projection has five
+  // The inverses are written down and not computed, because the view is rigid and the projection has five
   // entries.
   const double tangent = std::tan(double(camera.field_of_view) * std::numbers::pi / 360);
   const double depth = kFar / (kNear - kFar), shift = kNear * kFar / (kNear - kFar);
@@ -58,7 +58,7 @@ FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const Render
   u.aperture = camera.aperture;
   u.focus_distance = camera.focus_distance;
   u.heatmap_scale = kHeatmapScale;
-  u.total_samples = u.samples = params.samples;  // in the first frame no earlier sum is read
+  u.total_samples = u.samples = params.samples;  // The first frame reads no earlier sum.
   u.bounces = params.bounces;
   switch (workload) {
     case Workload::PathTracing:

@@ -21,9 +21,9 @@ namespace {
 using glm::dmat3;
 using glm::dvec3;
 
-constexpr double kTolerance = 1e-5;  // of the copy's largest extent, because files have five to seven digits
-constexpr double kFloatSteps = 8;    // of the largest coordinate, for copies far from the origin
-constexpr double kNormalCosine = 0.995;  // files round normals to three or four digits
+constexpr double kTolerance = 1e-5;  // share of the copy's largest extent: files have 5 to 7 digits
+constexpr double kFloatSteps = 8;    // float steps at the largest coordinate, for copies far from the origin
+constexpr double kNormalCosine = 0.995;  // Files round normals to three or four digits.
 // A body is flat when the determinant of its matrix, scaled to trace 1, is below this value.
 constexpr double kFlat = 1e-9;
 

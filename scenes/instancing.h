@@ -8,8 +8,8 @@
 namespace glint::scenes {
 
 // Returns the 3x4 matrix that moves every vertex of `from` onto the vertex of `to` with the same index, or
-// nothing when there is no such matrix. The match holds to a hundred-thousandth of the copy's size plus what
-// floats resolve there. Normals must follow the matrix, too.
+// nothing when there is no such matrix. Vertices may differ by a hundred-thousandth of the copy's size, plus
+// what floats resolve at their place. Normals must follow the matrix, too.
 std::optional<Affine> affine_between(const Model& from, const Model& to);
 
 // Removes each model that has the triangles, coordinates and materials (by value) of an earlier one and is an

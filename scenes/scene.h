@@ -87,8 +87,8 @@ struct Camera {
 
 struct Scene {
   std::string name;
-  // What the geometry really is: "original", "partial" (files of the original are absent), "stand-in" (files
-  // of another mesh) or "built-in" (generated).
+  // This says what the geometry really is: "original", "partial" (files of the original are absent),
+  // "stand-in" (files of another mesh) or "built-in" (generated).
   std::string form;
   std::string note;  // sentences for results: what differs from the original
   std::vector<Model> models;
@@ -96,13 +96,13 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   Camera camera;
-  bool alpha_test = false;            // triangle hit groups have the any-hit alpha shader
-  uint64_t original_triangles = 0;    // of the application's complete scene; 0: it has no such scene
-  uint64_t triangles() const;         // in the world, with those of each instance
-  uint64_t stored_triangles() const;  // of the models, each counted once
-  double fraction() const;            // of the original's triangles; 1 when there is no original
+  bool alpha_test = false;          // Triangle hit groups have the any-hit alpha shader.
+  uint64_t original_triangles = 0;  // triangles of the application's complete scene; 0: it has no such scene
+  uint64_t triangles() const;       // triangles in the world, with those of each instance
+  uint64_t stored_triangles() const;  // triangles of the models, each counted once
+  double fraction() const;            // share of the original's triangles; 1 when there is no original
   uint64_t procedurals() const;
-  uint64_t hash() const;  // of everything that reaches a shader, stable across runs and machines
+  uint64_t hash() const;  // hash of everything that reaches a shader, stable across runs and machines
 };
 
 // Returns Scene::instances, or each model once when the scene lists no instances.
@@ -110,7 +110,7 @@ std::vector<Instance> instances_of(const Scene& scene);
 
 struct LoadOptions {
   std::string assets;       // folder of original data; empty: there is none
-  bool instancing = false;  // models that are affine copies of an earlier one become instances of it
+  bool instancing = false;  // Models that are affine copies of an earlier one become instances of it.
   // It is called while a scene is loaded or generated, and may be empty.
   std::function<void(double fraction)> progress = {};
 };

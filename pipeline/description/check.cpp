@@ -77,7 +77,7 @@ class Check {
   }
 
  private:
-  // These files of the run directory are written by something else.
+  // Something else writes these files of the run directory.
   void check_saves(const std::vector<Save>& saves) {
     static const std::vector<std::string> kOwn{"config.toml", "run.json",       "stats.txt",
                                                "stats.json",  "stats.csv",      "printf.txt",
@@ -98,7 +98,7 @@ class Check {
         here.push_back(&g);
     const std::string table = table_for(use.binding.kind);
     if (here.empty()) {
-      if (!use.is_used) return;  // the shader declares it and never reads it
+      if (!use.is_used) return;  // The shader declares it and never reads it.
       errors_.error(
           {d_.path, 0, 0}, fmt::format("nothing is bound to set {} binding {}", set, binding),
           fmt::format("{}: add [[{}]] with set = {}, binding = {}", declared(use), table, set, binding));
@@ -175,8 +175,8 @@ class Check {
     check_stage(group.intersection, isa::Stage::Intersection, group.where, "'intersection'");
   }
 
-  // Notes payloads that are too large. Which payload a trace hands over is known only at run time, so only
-  // what no trace can hand over is reported.
+  // Notes payloads that are too large. Which payload a trace hands over is known only at run time, so a
+  // payload is reported only when no trace can hand it over.
   void note_large_payloads() {
     uint32_t largest = 0;
     for (const ShaderModule& module : modules_.all())

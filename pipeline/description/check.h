@@ -10,7 +10,7 @@
 namespace glint::pipeline {
 
 // Checks kinds, counts, shapes and stages of records. Throws UserError with all mistakes. `warnings` gets
-// what nobody uses.
+// what is given and never used.
 void check_pipeline(const PipelineDescription& description, const Modules& modules,
                     std::vector<std::string>& warnings);
 

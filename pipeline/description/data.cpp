@@ -227,7 +227,7 @@ bool put_number(const std::string& name, const Value& value, const AddressOf& ad
   if (type == "f16") return store(exec::to_half(float(real)), at), true;
   if (value.kind == Value::Kind::Real) return false;
   const int64_t whole = value.kind == Value::Kind::Bool ? int64_t(value.flag) : value.whole;
-  std::memcpy(at, &whole, bytes_of_number(type));  // little endian: takes the low bits
+  std::memcpy(at, &whole, bytes_of_number(type));  // On a little-endian machine this takes the low bits.
   return true;
 }
 

@@ -46,7 +46,7 @@ std::string zeros(const BlockType& type) {
   return type.offsets.size() == 1 ? zero : list(type.offsets.size(), zero);
 }
 
-// Returns the number type that all of a block is made of, or u32.
+// Returns the number type that all of a block is made of, or u32 when there is no such type.
 std::string number_of(const BlockType& type) {
   if (type.kind == BlockType::Kind::Numbers) return type.number;
   if (type.kind == BlockType::Kind::Array) return number_of(type.element[0]);

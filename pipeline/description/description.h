@@ -26,8 +26,9 @@ struct ShaderFile {
 // Describes the bytes of a buffer, of a record or of push constants.
 struct DataSource {
   SourceLocation where;
-  Value data;  // numbers of `type`, {TYPE = numbers} or a list of such, or members by name; none: `init`
-               // applies
+  // numbers of `type`, {TYPE = numbers} or a list of such, or members by name; without any of these, `init`
+  // applies
+  Value data;
   std::string type = "u32";
   std::string init = "zero";  // zero, value, iota, random, file, mesh
   double value = 0, low = 0, high = 1;

@@ -13,13 +13,13 @@ struct Reading {
   std::string beside(const std::string& file) const;  // relative paths start at the description's folder
 };
 
-// read_shaders.cpp
+// These are in read_shaders.cpp.
 void read_shaders(Reading& r, TableReader& root);
 void read_launch(Reading& r, TableReader& root);
-// read_resources.cpp
+// These are in read_resources.cpp.
 void read_resources(Reading& r, TableReader& root);
 DataSource read_data(Reading& r, TableReader& t, bool is_buffer);
-// read_structures.cpp
+// These are in read_structures.cpp.
 void read_structures(Reading& r, TableReader& root);
 Slot read_slot(TableReader& t);
 

@@ -28,7 +28,7 @@ struct Value {
   const Value* find(const std::string& key) const;  // null when absent
 };
 
-// The most along an axis of a launch or a picture, which is CUDA's limit of a grid's x.
+// This is the most along an axis of a launch or a picture: CUDA's limit of a grid's x.
 inline constexpr int64_t kMostOfAxis = 0x7fff'ffff;
 
 struct Entry {
@@ -40,8 +40,8 @@ struct Entry {
 Value read_toml(const std::string& path);
 Value parse_toml(const std::string& text, const std::string& name);
 
-// Reads one table. Each call marks its key as known, and finish() reports the others with the nearest known
-// key. Wrong types are reported at once, and the fallback stands in.
+// Reads one table. Each call marks its key as known, and finish() reports the other keys, with the nearest
+// known key for each. Wrong types are reported at once, and the call then returns the fallback.
 class TableReader {
  public:
   // `what` names the table in messages, such as "a buffer".
@@ -58,7 +58,7 @@ class TableReader {
   bool flag(const std::string& key, bool fallback);
   std::vector<std::string> texts(const std::string& key);  // a string or a list of strings
   std::vector<double> numbers(const std::string& key);     // a number or a list; lists in lists are flattened
-  // Reads one number, or up to `most`, each from 1 to kMostOfAxis.
+  // Reads one number, or up to `most` of them. Each is from 1 to kMostOfAxis.
   std::vector<uint32_t> sizes(const std::string& key, size_t most);
   std::vector<const Value*> tables(const std::string& key);  // [[key]] or [key]
   void finish();

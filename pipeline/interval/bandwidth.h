@@ -9,9 +9,9 @@
 
 namespace glint::pipeline {
 
-// Cuts time into short spans, each with room for as many cycles of work as it is long. A request takes room
-// from the first span with any, at or after its time. So a reply that comes late does not hold up those that
-// come before it. Model: work that lies farther apart than kSpans spans does not meet.
+// Cuts time into short spans. Each has room for as many cycles of work as it is long. A request takes room
+// from the first span that has any, at or after the request's time. So a reply that comes late does not hold
+// up those that come before it. Model: work that lies more than kSpans spans apart does not meet.
 class Bandwidth {
  public:
   Bandwidth() : rooms_(kSpans) {}

@@ -1,4 +1,5 @@
-// Makes the functional pass: takes the warps of all cores in order of time, one interval at once.
+// Makes the functional pass: it takes the warps of all cores in order of time, and runs one interval of a
+// warp at once.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/interval/interval_machine.h"
 
@@ -17,7 +18,7 @@ using isa::Space;
 
 namespace {
 
-// Cores take turns of this many cycles, which is short beside a miss and long beside an event.
+// Cores take turns of this many cycles, which is short compared with a miss and long compared with an event.
 constexpr Cycle kTurn = 48;
 
 // Refuses everything that the model would silently pass over, all at once.
@@ -69,7 +70,7 @@ struct IntervalMachine::Core {
   core::LineList lines;
   core::LocalLayout local;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
-  // Cycles in which the registers of the running warp are ready.
+  // Holds the cycles in which the registers of the running warp are ready.
   std::array<Cycle, core::kScoreboardEntries> ready{};
 };
 

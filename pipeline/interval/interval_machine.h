@@ -1,4 +1,4 @@
-// Predicts the cycles of a launch in one functional pass, by the time between waits and the time of the
+// Predicts the cycles of a launch in one functional pass, from the time between waits and the time of the
 // waits.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -27,8 +27,9 @@ struct IntervalEstimate {
   std::array<CacheCounts, 2> l1;         // counts, indexed by Asker
   CacheCounts l2;
   uint64_t dram_sectors = 0;
-  // Cycles of work of the busiest resource of each kind. Whatever overlaps, no run is shorter than these. The
-  // largest is the bound of throughput; what the prediction exceeds it by is latency that nothing hides.
+  // These are the cycles of work of the busiest resource of each kind. Whatever overlaps, no run is shorter
+  // than these. The largest is the bound of throughput; what the prediction exceeds it by is latency that
+  // nothing hides.
   double issue = 0, rt_port = 0, rt_tests = 0, rt_slots = 0, l1_ports = 0, l2_slices = 0, dram_buses = 0;
   // Returns the name and the cycles of each of these, in this order.
   std::array<std::pair<std::string_view, double>, 7> bounds() const;

@@ -21,7 +21,8 @@ struct CacheCounts {
 };
 
 // Model: there are no MSHRs, miss queues, credits or refresh, and the requests of a bank are served in order
-// of arrival. A line takes its place when it is asked for, and reads of it wait until it has come.
+// of arrival. A line takes its place in the cache when it is asked for, and reads of it wait until it has
+// come.
 class MemoryModel {
  public:
   MemoryModel(const mem::Params& params, uint32_t num_cores, double core_mhz);
@@ -45,8 +46,8 @@ class MemoryModel {
 
  private:
   // Holds when a line was last fetched. Warps run ahead of each other within an interval, so a line may have
-  // been asked for at a later time than the time at which it is wanted. Then this wish fetches it, at the
-  // cost that the later one has paid.
+  // been asked for at a later time than the time at which another warp wants it. Then the earlier request
+  // fetches it, with the latency that the later one had.
   struct Fill {
     Cycle asked = 0, ready = 0;
     Cycle ready_for(Cycle at) {

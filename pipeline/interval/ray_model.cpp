@@ -10,9 +10,9 @@
 
 namespace glint::pipeline {
 
-// Cycles from a lane's wish to its request, and from a test's end to the next wish, which the unit's
-// registers take. Source: the timing machine's RT unit (rtunit/unit/rt_unit.cpp), which does each in a cycle
-// of its own.
+// This is the time from a lane's wish to its request, and from a test's end to the next wish, which the
+// unit's registers take. Source: the timing machine's RT unit (rtunit/unit/rt_unit.cpp), which does each in a
+// cycle of its own.
 constexpr Cycle kStep = 1;
 
 RayModel::RayModel(const rt::Params& params, const mem::AddressSpace& memory, MemoryModel& caches,
@@ -48,7 +48,7 @@ void RayModel::begin(Cycle at, uint32_t slot, exec::WarpContext& warp) {
   go_on(uint32_t(free - traces_.begin()), travelling, at);
 }
 
-// Continues lanes that have a test behind them, or none yet. Those that travel on want their next node.
+// Continues lanes whose test has ended, or that have had none yet. Those that travel on want their next node.
 void RayModel::go_on(uint32_t index, LaneMask lanes, Cycle now) {
   Trace& trace = traces_[index];
   const bool wanted = trace.wanting != 0;
@@ -110,7 +110,7 @@ void RayModel::send(Cycle now) {
   trace.wanting &= ~same;
   num_wanting_ -= trace.wanting == 0;
   const rt::Fetch fetch = rt::next_fetch(trace.warp->rays[first]);
-  if (!memory_.find(fetch.address, fetch.bytes)) {  // a wrong address led to bytes outside of any structure
+  if (!memory_.find(fetch.address, fetch.bytes)) {  // A wrong address led to bytes outside of any structure.
     for_each_lane(same, [&](int lane) { rt::break_off(trace.warp->rays[lane]); });
     return push(now, index, same, false);
   }

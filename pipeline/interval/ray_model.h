@@ -19,7 +19,7 @@ namespace glint::pipeline {
 
 struct RayModelCounts {
   uint64_t rays = 0, nodes = 0, requests = 0, traces = 0;
-  uint64_t trace_cycles = 0;  // cycles from a warp's place in the unit to its last ray's end, summed
+  uint64_t trace_cycles = 0;  // cycles from a warp's entry to its last ray's end, summed
 };
 
 // Advances rays node by node. Rays of a warp that want the same node at the same time share its fetch, and

@@ -61,7 +61,7 @@ class SurfaceNets {
   }
 
   void sample_block(int x0, int y0, int z0, int size) {
-    // The 1 is added so that the cells between this block's last points and the next block's first count for
+    // The 1 makes the cells between this block's last points and the next block's first points count for
     // both.
     const float reach = 0.8660254f * float(size + 1);  // half the block's diagonal, in cells
     const float half = 0.5f * float(size - 1);

@@ -8,8 +8,8 @@
 
 namespace glint::scenes {
 
-// Returns the distance to an ellipsoid: exact on the surface, a bound elsewhere. Distances are in the units
-// of the points. They use only +, *, / and sqrt, so every machine sculpts the same bits.
+// Returns the distance to an ellipsoid. It is exact on the surface and a bound elsewhere. Distances are in
+// the units of the points. They use only +, *, / and sqrt, so every machine sculpts the same bits.
 float ellipsoid_distance(const Vec3& p, const Vec3& center, const Vec3& radii);
 // Returns the distance to a capsule whose radius goes linearly from `start_radius` at `start` to `end_radius`
 // at `end`.

@@ -1,4 +1,4 @@
-// Builds generated scenes: models and materials are added one after the other, with progress and the budget
+// Builds generated scenes. Models and materials are added one after the other, with progress and the budget
 // of triangles.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -16,7 +16,7 @@ struct Branch {
   float length = 1, radius = 1;
 };
 
-constexpr uint32_t kSegments = 4;  // of a branch
+constexpr uint32_t kSegments = 4;  // segments of a branch
 constexpr uint32_t kSides = 6;
 constexpr uint64_t kBranchTriangles = 2 * kSegments * kSides;
 

@@ -95,10 +95,10 @@ class Nodes {
   }
 
  private:
-  // The lamp's radius is this share of the scene's extent. Choice: paths find a lamp by chance, so it is
-  // large.
+  // The lamp's radius is this share of the scene's extent. Choice: the lamp is large, because paths find it
+  // only by chance.
   static constexpr float kLampSize = 0.05f;
-  static constexpr float kLampColor = 15;  // as the lamps of LumiBench's scenes
+  static constexpr float kLampColor = 15;  // like the lamps of LumiBench's scenes
 
   uint32_t model_of(int mesh) {
     const auto [place, is_new] = models_.try_emplace(mesh, uint32_t(scene_.models.size()));

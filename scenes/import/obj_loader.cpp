@@ -66,7 +66,7 @@ std::string contents(const std::string& path) {
 
 bool parse(tinyobj::ObjReader& reader, const std::string& path) {
   tinyobj::ObjReaderConfig config;
-  config.triangulate = false;  // the loader's own triangulation is not a fan
+  config.triangulate = false;  // The loader's own triangulation is not a fan.
   config.vertex_color = false;
   const std::vector<std::string> parts = parts_of(path);
   if (parts.empty()) return reader.ParseFromFile(path, config);

@@ -51,7 +51,7 @@ float rabbit_distance(const Vec3& p) {
   d = blended_union(d, head_distance(m), 0.10f);
   // The fur, as on the clay original, is low bumps that only light shows.
   d += 0.006f * noise(p * 9.0f) + 0.003f * noise(p * 24.0f);
-  return std::max(d, -p[1]);  // the rabbit stands on the floor
+  return std::max(d, -p[1]);  // The rabbit stands on the floor.
 }
 
 }  // namespace

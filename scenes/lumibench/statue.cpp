@@ -11,7 +11,7 @@ namespace glint::scenes {
 namespace {
 
 constexpr float kCell = 1.602f;  // chosen for about 448.9K triangles
-constexpr int kFeathers = 9;     // of a wing
+constexpr int kFeathers = 9;     // feathers of a wing
 
 // Returns the distance to a wing. The figure looks along +z with its right hand at +x; `m` has x = |x|.
 float wing_distance(const Vec3& m) {
@@ -32,8 +32,8 @@ float wing_distance(const Vec3& m) {
 }
 
 float robe_distance(const Vec3& p) {
-  // The angle around the axis is a diamond angle in 0 to 4 instead of an arc tangent, because it is the same
-  // on every machine.
+  // The angle around the axis is a diamond angle from 0 to 4. It takes the place of an arc tangent, because
+  // it is the same on every machine.
   const float ax = std::abs(p[0]) + std::abs(p[2]) + 1e-6f;
   const float quarter = p[2] / ax;
   const float angle = p[0] >= 0 ? 1 + quarter : 3 - quarter;
