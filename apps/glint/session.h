@@ -19,10 +19,10 @@ struct Session {
   Resources resources;
   std::vector<Plugin> plugins;   // loaded, in order
   report::Terminal terminal;     // abilities of stdout
-  bool on_terminal = false;      // stdout is a terminal, so progress may be drawn
-  bool can_move_cursor = false;  // the terminal knows escape sequences
+  bool on_terminal = false;      // Stdout is a terminal, so progress may be drawn.
+  bool can_move_cursor = false;  // The terminal knows escape sequences.
   int progress_descriptor = -1;  // where a process that started this one listens; -1: nowhere
-  std::function<Exit()> action;  // set by the subcommand that was chosen
+  std::function<Exit()> action;  // The subcommand that was chosen sets it.
 };
 
 // Each function adds its subcommand, whose callback sets Session::action.

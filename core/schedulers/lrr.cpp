@@ -1,5 +1,4 @@
-// Implements the issue policy `lrr` (loose round robin): it takes the next ready warp after the one issued
-// last.
+// Implements the issue policy `lrr`: loose round robin takes the next ready warp after the one issued last.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>

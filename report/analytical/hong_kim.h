@@ -11,21 +11,22 @@
 
 namespace glint::report {
 
-// Holds what the model is given, all from statistics and configuration of a finished run of the timing
-// machine.
+// Holds what the model is given. All of it comes from statistics and configuration of a finished run of the
+// timing machine.
 struct HongKimInputs {
   double cores = 0, warps = 0;  // warps: number that is resident on a core at a time (the paper's N)
   double repetitions = 0;       // times that a core is filled with these warps
   double instructions = 0;      // instructions of a warp
-  // Memory and texture instructions and traces of a warp. Choice: a trace is a memory instruction of many
-  // accesses.
+  // These are the memory and texture instructions and traces of a warp. Choice: a trace is a memory
+  // instruction of many accesses.
   double memory_instructions = 0;
   double accesses = 0;  // L1 accesses of a memory instruction, which are the model's uncoalesced transactions
   // These are the cycles from an L1 miss to its data, and the fraction of L1 reads that miss.
   double dram_latency = 0, miss_rate = 0;
   double departure_delay = 0;  // cycles between two accesses of a core
   double issue_cycles = 0;     // cycles of a core for a warp instruction
-  // DRAM bytes of a memory instruction. Choice: only misses count; the paper adjusts only the latency.
+  // These are the DRAM bytes of a memory instruction. Choice: only misses count; the paper adjusts only the
+  // latency.
   double bytes = 0;
   double bandwidth = 0;  // DRAM bytes per cycle
 

@@ -12,13 +12,13 @@ struct ModelRow {
   std::string workload;
   double cycles = 0;              // simulated cycles
   std::vector<double> predicted;  // cycles that each model predicts
-  // Inputs and intermediate values. Every row has the same names.
+  // These are inputs and intermediate values. Every row has the same names.
   std::vector<std::pair<std::string, double>> inputs;
 };
 
 struct ModelScore {
-  // R2 of the linear regression of simulated on predicted cycles, as LumiBench gives it. It is blind to a
-  // constant factor.
+  // This is R2 of the linear regression of simulated on predicted cycles, as LumiBench gives it. It is blind
+  // to a constant factor.
   double r2 = 0;
   double mean_error = 0;  // mean of |predicted / simulated - 1|
   double worst_error = 0;

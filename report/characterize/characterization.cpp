@@ -49,7 +49,7 @@ void draw_kiviat(Characterization& result) {
   for (Eigen::Index j = 0; j < result.kiviat.cols(); ++j) {
     const Eigen::ArrayXd values = result.table.values.col(result.metrics.metrics[size_t(j)].column).array();
     result.kiviat.col(j) =
-        (values - values.minCoeff()) / (values.maxCoeff() - values.minCoeff());  // no column is constant
+        (values - values.minCoeff()) / (values.maxCoeff() - values.minCoeff());  // No column is constant.
   }
 }
 

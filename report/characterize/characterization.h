@@ -17,7 +17,7 @@ struct CharacterizationOptions {
   Linkage linkage = Linkage::Average;
   int clusters = 8;  // number of clusters, and of workloads in the subset; at most the number of workloads
   SearchSettings search;  // settings of the search for representative metrics
-  // Names of a published subset to compare with. Those that the table lacks are left out.
+  // These are the names of a published subset to compare with. Those that the table lacks are left out.
   std::vector<std::string> reference;
   std::string reference_name;  // for example "the paper's subset"
 };

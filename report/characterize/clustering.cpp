@@ -119,7 +119,7 @@ std::vector<int> leaf_order(const std::vector<Join>& joins) {
 }
 
 std::vector<int> clusters(const std::vector<Join>& joins, int count) {
-  const int n = int(joins.size()) + 1, kept = n - count;  // `kept` joins stay
+  const int n = int(joins.size()) + 1, kept = n - count;  // `kept` joins stay.
   std::vector<int> parent(size_t(2 * n - 1), -1);
   for (int i = 0; i < kept; ++i)
     parent[size_t(joins[size_t(i)].first)] = parent[size_t(joins[size_t(i)].second)] = n + i;
@@ -128,7 +128,7 @@ std::vector<int> clusters(const std::vector<Join>& joins, int count) {
     int root = leaf;
     while (parent[size_t(root)] >= 0) root = parent[size_t(root)];
     if (roots.empty() || roots.back() != root)
-      roots.push_back(root);  // the leaves of a group are neighbours in this order
+      roots.push_back(root);  // The leaves of a group are neighbours in this order.
     out[size_t(leaf)] = int(roots.size()) - 1;
   }
   return out;

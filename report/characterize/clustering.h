@@ -22,8 +22,8 @@ struct Join {
   int size = 0;               // leaves of both groups
 };
 
-// Returns n - 1 joins, nearest first. `scores` has a row for each workload, and at least two. Of equally near
-// pairs, the one with the lowest rows joins first.
+// Returns n - 1 joins, nearest first. `scores` has a row for each workload, and at least two rows. Of equally
+// near pairs, the one with the lowest rows joins first.
 std::vector<Join> hierarchy(const Eigen::MatrixXd& scores, Linkage linkage);
 
 // Returns the leaves from left to right, so that no lines of a dendrogram cross.
@@ -33,8 +33,8 @@ std::vector<int> leaf_order(const std::vector<Join>& joins);
 // are numbered from 0 in leaf_order().
 std::vector<int> clusters(const std::vector<Join>& joins, int count);
 
-// Returns the correlation of distances and the distances at which leaves join (cophenetic), -1 to 1. It tells
-// how well the tree shows the distances.
+// Returns the correlation of the distances with the distances at which leaves join (the cophenetic
+// correlation), from -1 to 1. It tells how well the tree shows the distances.
 double cophenetic_correlation(const std::vector<Join>& joins, const Eigen::MatrixXd& scores);
 
 }  // namespace glint::report

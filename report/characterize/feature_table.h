@@ -12,8 +12,8 @@ struct FeatureTable {
     std::string column, why;
   };
   std::vector<std::string> workloads;  // distinct
-  // Scene and shader set of each workload. They come from its name (SCENE_SHADER) when the table has no such
-  // columns.
+  // These are the scene and the shader set of each workload. They come from its name (SCENE_SHADER) when the
+  // table has no such columns.
   std::vector<std::string> scenes, shaders;
   std::vector<std::string> metrics;
   Eigen::MatrixXd values;        // workloads x metrics, as they are in the file

@@ -1,5 +1,5 @@
-// Finds the few metrics that tell workloads apart as all do, by a genetic algorithm as in MICA (Hoste,
-// Eeckhout).
+// Finds the few metrics that tell workloads apart as all metrics do, by a genetic algorithm as in MICA
+// (Hoste, Eeckhout).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>

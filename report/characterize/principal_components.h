@@ -6,12 +6,13 @@
 namespace glint::report {
 
 struct PrincipalComponents {
-  // Eigenvalues of the correlation matrix, largest first, one per metric. Their sum is the number of metrics.
+  // These are the eigenvalues of the correlation matrix, largest first, one per metric. Their sum is the
+  // number of metrics.
   Eigen::VectorXd eigenvalues;
   Eigen::Index kept = 0;       // number of those above 1 (Kaiser's criterion), at least one
   Eigen::MatrixXd directions;  // metrics x kept, unit columns; the entry of largest size is positive
-  // Metrics x kept: directions times the root of the eigenvalue, which is the correlation of metric and
-  // component.
+  // The rows are metrics and the columns kept components. Each value is a direction times the root of its
+  // eigenvalue, which is the correlation of metric and component.
   Eigen::MatrixXd loadings;
   Eigen::MatrixXd scores;  // workloads x kept
 

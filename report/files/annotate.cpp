@@ -114,7 +114,7 @@ std::string Annotator::spirv(uint32_t number) const {
       summed(profile_, number, [](const ProfileRow& row) { return row.spirv; });
   if (program.spirv.empty()) return heading_of(number, "not compiled from SPIR-V") + "\n\n";
   Rows rows;
-  bool in_function = false;  // what comes before a function is declared, not run
+  bool in_function = false;  // What comes before it is declared, not run.
   for (uint32_t n = 1; n <= program.spirv.size(); ++n) {
     const ListedLine& line = program.spirv[n - 1];
     in_function |= line.text.find("= OpFunction ") != std::string::npos;

@@ -48,7 +48,7 @@ class Tokens {
       } else if (std::isspace(static_cast<unsigned char>(text_[at_]))) {
         step();
       } else {
-        fresh_ = false;  // this line has content
+        fresh_ = false;  // This line has content.
         return;
       }
     }
@@ -121,7 +121,7 @@ std::vector<std::string> frames_of(const ProgramListing& program, uint32_t scope
       out.insert(
           out.begin(),
           fmt::format("{}:{}", row.file < program.files.size() ? program.files[row.file] : "?", row.line));
-    scope = row.caller < scope ? row.caller : 0;  // callers come first
+    scope = row.caller < scope ? row.caller : 0;  // Callers come first.
   }
   return out;
 }

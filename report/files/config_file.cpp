@@ -14,7 +14,7 @@ struct Table {
 };
 
 std::vector<Table> tables_of(const std::vector<ParamInfo>& params) {
-  std::vector<Table> tables{{"", {}}};  // keys without a table must come first in TOML
+  std::vector<Table> tables{{"", {}}};  // Keys without a table must come first in TOML.
   for (const ParamInfo& param : params) {
     if (!param.needs.empty()) continue;
     const size_t dot = param.key.rfind('.');

@@ -16,8 +16,8 @@ std::string config_file(const std::vector<ParamInfo>& params, const std::string&
 // Returns "key=value" lines of all parameters without comments, from which configuration hashes are made.
 std::string config_key_values(const std::vector<ParamInfo>& params);
 
-// Returns the 64-bit FNV-1a hash (constants of the published definition). It names a configuration and
-// protects against no intent.
+// Returns the 64-bit FNV-1a hash (constants of the published definition). The hash names a configuration, and
+// it protects against no intent.
 uint64_t fnv1a(const std::string& bytes);
 
 }  // namespace glint::report

@@ -12,7 +12,7 @@ namespace glint::report {
 // Summarises the pixels of a map.
 struct HeatSummary {
   double sum = 0, min = 0, mean = 0, max = 0;
-  double p99 = 0;  // 99 of 100 pixels have no more than this
+  double p99 = 0;  // 99 of 100 pixels have no more than this.
   double top = 0;  // end of the colour scale: p99, or the largest value when p99 is 0
 };
 HeatSummary summary_of(const CostMap& map);

@@ -43,8 +43,8 @@ struct RunInfo {
   std::string scene, scene_form, scene_note, shader, config, mode;
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0;
   double scene_fraction = 1;  // fraction of the original's triangles
-  // The parameters of the frame, in the order of the file. A dot in a key leads into a table. A launch
-  // without a frame has only these four.
+  // These are the parameters of the frame, in the order of the file. A dot in a key leads into a table. A
+  // launch without a frame has only these four.
   std::vector<std::pair<std::string, uint64_t>> frame = {
       {"width", 0}, {"height", 0}, {"samples", 0}, {"seed", 0}};
   std::optional<StructureInfo> structures;                   // set once they are built

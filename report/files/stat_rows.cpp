@@ -41,7 +41,7 @@ class RowVisitor final : public PathVisitor {
   void visit(const stats::Histogram& stat) override {
     const stats::Bins& bins = stat.bins();
     for (size_t i = 0; i < stat.counts().size(); ++i) {
-      if (stat.counts()[i] == 0) continue;  // empty bins are left out, because there can be hundreds
+      if (stat.counts()[i] == 0) continue;  // There can be hundreds of empty bins, so these are left out.
       const uint64_t low = bins.low + i * bins.step;
       const bool last = i + 1 == stat.counts().size();
       const std::string name = last             ? fmt::format("::{}+", low)

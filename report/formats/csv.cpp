@@ -1,4 +1,5 @@
-// Writes statistics as comma-separated values for spreadsheets: header `path,value,unit,doc`.
+// Implements the format `csv` of statistics: comma-separated values for spreadsheets, with the header
+// `path,value,unit,doc`.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/csv_field.h"
 #include "report/files/stat_rows.h"

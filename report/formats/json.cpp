@@ -1,4 +1,5 @@
-// Writes statistics as a JSON tree: groups are objects, and a statistic is {"value", "unit", "doc"}.
+// Implements the format `json` of statistics: a JSON tree in which groups are objects and a statistic is
+// {"value", "unit", "doc"}.
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 #include <utility>

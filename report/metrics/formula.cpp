@@ -32,7 +32,7 @@ constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
 
 // Maps paths of the timing machine to those of the functional machine, which are looked up when the former do
 // not exist. Choice: a metric means the same whichever machine counted it. A beginning that ends in "::"
-// keeps the part.
+// keeps the name of the part behind it.
 constexpr std::pair<std::string_view, std::string_view> kFunctional[] = {
     {"gpu.core[*].lane_instructions", "gpu.lanes::*"},
     {"gpu.core[*].instructions", "gpu.instructions::*"},

@@ -1,5 +1,5 @@
-// Declares the metrics of a workload in the LumiBench paper's terms: 35 of the GPU, 29 of the RT unit, 23 of
-// scene and shaders.
+// Declares the metrics of a workload in the LumiBench paper's terms: 35 of the GPU, 29 of the RT unit, and 23
+// of scene and shaders.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>

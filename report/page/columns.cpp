@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of statistics, at 2 to 3 bytes each. With more, a page would not stay below 1 MB.
+// This many numbers of statistics take 2 to 3 bytes each. With more, a page would not stay below 1 MB.
 constexpr size_t kMaxNumbers = 200'000;
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53; from there on a double is not an exact count
 

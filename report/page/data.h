@@ -15,8 +15,8 @@ namespace glint::report {
 struct PageRun {
   std::string directory;
   std::string preset_name, preset;
-  // The timeline that was asked for. Without one, it is the middle of the trace's core 0, if there is a
-  // trace.
+  // This is the timeline that was asked for. Without one, it is the middle of the trace's core 0, if there is
+  // a trace.
   std::optional<TimelineRequest> timeline{};
 };
 

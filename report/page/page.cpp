@@ -236,7 +236,7 @@ std::string script_of(const PageParts& parts) {
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts) {
   const std::string title = page_title(data);
   std::string out = parts.frame;
-  // The script goes in last, so that no mark is searched in it.
+  // The script goes in last, so that no mark is searched for in it.
   place(out, "<!--title-->", escaped(title) + " – Glint report");
   place(out, "<!--style-->", "<style>\n" + parts.style + "</style>");
   place(out, "<!--noscript-->",

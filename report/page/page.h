@@ -8,8 +8,8 @@ namespace glint::report {
 
 // Holds the page's parts that do not depend on the runs. They are in web/ of the source tree.
 struct PageParts {
-  // HTML with the places <!--style-->, <!--title-->, <!--noscript-->, <!--sections-->, <!--data--> and
-  // <!--script-->.
+  // This is HTML with the places <!--style-->, <!--title-->, <!--noscript-->, <!--sections-->, <!--data-->
+  // and <!--script-->.
   std::string frame;
   std::string style, script;
   std::string unpack;  // a script that unpacks the other one and runs it

@@ -15,8 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kLeastForR2 = 3;  // because a line through two points always fits
-// Number of eigenvalues shown, as in the figure (web/src/characterization/scree.js). The CSV has all.
+constexpr size_t kLeastForR2 = 3;  // A line through two points always fits.
+// This is the number of eigenvalues shown, as in the figure (web/src/characterization/scree.js). The CSV has
+// all.
 constexpr int kEigenvalues = 20;
 constexpr double kStrongLoading = 0.7;  // a correlation of this size explains half of the variance
 

@@ -6,8 +6,8 @@
 
 namespace glint::report {
 
-constexpr size_t kMaxRunsInTables = 8;  // each has a column, and more would not fit a page
-constexpr size_t kOpsInTables = 12;  // those with the largest values, as in the figures; profile.csv has all
+constexpr size_t kMaxRunsInTables = 8;  // Each has a column, and more would not fit a page.
+constexpr size_t kOpsInTables = 12;     // the ops with the largest values; profile.csv has all
 
 // Returns tables of breakdowns and histograms, summed over the instances of a unit, and of the profile's ops.
 // What is 0 in every run is left out. `head` is the tables' first row, as wide as the runs, unit and meaning.

@@ -249,7 +249,7 @@ Flip flip(const Picture& a, const Picture& b, double ppd) {
   const Size size{ptrdiff_t(a.width), ptrdiff_t(a.height)};
   const Seen x = see(a, size, xyz, ppd), y = see(b, size, xyz, ppd);
   const Features fx = features(x.grey, size, ppd), fy = features(y.grey, size, ppd);
-  // These are the two colours that are furthest apart: green and blue.
+  // These two colours are the furthest apart: green and blue.
   const double largest =
       std::pow(hyab(hunt_lab(xyz.of({0, 1, 0})), hunt_lab(xyz.of({0, 0, 1}))), kColorExponent);
   Flip out;

@@ -7,8 +7,8 @@
 
 namespace glint::report {
 
-// Pixels per degree for an observer 0.70 m away from a screen 0.70 m wide with 3840 pixels (Andersson et al.
-// 2020, sec. 5).
+// These are the pixels per degree for an observer 0.70 m away from a screen 0.70 m wide with 3840 pixels
+// (Andersson et al. 2020, sec. 5).
 inline constexpr double kPixelsPerDegree = 67;
 
 struct Flip {

@@ -24,7 +24,7 @@ double known(float value) {
 // Says how the three channels from `first` on differ.
 struct PixelPair {
   bool is_same = true, is_beyond_measure = false, is_finite = true;
-  // The sum of the squares of the differences between finite values, and the largest difference.
+  // These are the sum of the squares of the differences between finite values, and the largest difference.
   double squares = 0, largest = 0;
 };
 

@@ -28,10 +28,10 @@ struct ImageDifference {
   double ssim = 0;            // similarity of luminance; 1 for equal pictures
   double largest = 0;         // largest difference of a channel in which both are finite
   uint64_t pixels_apart = 0;  // pixels in which any channel is not the same
-  // Number of pixels beyond measure. If there are any, mse, psnr and ssim are not numbers.
+  // This is the number of pixels beyond measure. If there are any, mse, psnr and ssim are not numbers.
   uint64_t pixels_beyond_measure = 0;
   uint64_t first_beyond_measure = 0;  // the first pixel beyond measure
-  // Pixels that are the same in both pictures and have a channel that is not finite. They add nothing.
+  // Counts pixels that are the same in both pictures and have a channel that is not finite. They add nothing.
   uint64_t pixels_not_finite = 0;
 };
 

@@ -24,7 +24,7 @@ namespace glint::report {
 namespace {
 
 uint8_t to_byte(float value) {
-  if (!(value > 0.0f)) return 0;  // also catches not-a-number
+  if (!(value > 0.0f)) return 0;  // This also catches values that are not a number.
   return value >= 1.0f ? uint8_t{255} : uint8_t(value * 255.0f + 0.5f);
 }
 

@@ -14,7 +14,7 @@ struct ImageView {
   std::span<const float> rgba;     // width * height * 4
 };
 
-// Returns three channels of 8 bits: round(255 * clamp(value, 0, 1)). Not-a-number becomes 0.
+// Returns three channels of 8 bits: round(255 * clamp(value, 0, 1)). A value that is not a number becomes 0.
 std::string png_bytes(const ImageView& image);
 
 // Returns "PF" and three little-endian floats per pixel, with the bottom row first. Values are not clamped.

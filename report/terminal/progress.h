@@ -1,4 +1,5 @@
-// Draws a progress line with an estimate of the time left, in place; silent when stdout is not a terminal.
+// Draws a progress line with an estimate of the time left, in place. It is silent when stdout is not a
+// terminal.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>

@@ -15,7 +15,8 @@ namespace glint::report {
 struct MixRow {
   std::string name;
   uint64_t count = 0;  // warp instructions executed
-  // Core cycles from issue to completion, summed over the instructions. It is 0 in functional runs.
+  // These are the core cycles from issue to completion, summed over the instructions. They are 0 in
+  // functional runs.
   uint64_t latency = 0;
 };
 

@@ -11,11 +11,11 @@ namespace glint::report {
 size_t display_width(const std::string& text) {
   size_t width = 0;
   for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\x1b') {  // the sequence is "ESC [ ... m"
+    if (text[i] == '\x1b') {  // The sequence is "ESC [ ... m".
       while (i < text.size() && text[i] != 'm') ++i;
       continue;
     }
-    if ((uint8_t(text[i]) & 0xc0) != 0x80) ++width;  // continuation bytes take no column
+    if ((uint8_t(text[i]) & 0xc0) != 0x80) ++width;  // Continuation bytes take no column.
   }
   return width;
 }

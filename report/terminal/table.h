@@ -1,4 +1,4 @@
-// Lays out columns, bars and numbers for a terminal: plain text whose columns line up.
+// Lays out columns, bars and numbers for a terminal, as plain text whose columns line up.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -28,7 +28,7 @@ std::string bar(double fraction, int width, const Terminal& terminal);
 
 std::string with_thousands(uint64_t value);  // such as "1 234 567"
 std::string percent(double fraction);        // such as "41.3 %"
-// Returns of / whole, or 0 where the whole is 0.
+// Returns `of` / `whole`, or 0 where the whole is 0.
 inline double part(uint64_t of, uint64_t whole) {
   return whole ? double(of) / double(whole) : 0.0;
 }

@@ -39,7 +39,7 @@ constexpr SceneNeeds kNeeds[] = {
 
 // The measured peaks of the generated scenes are 44 to 93 % of what these constants give.
 constexpr double kProgram = 150e6;  // bytes without a scene
-// Bytes of a triangle: geometry, its copies while it is built and uploaded, structures.
+// These are the bytes of a triangle: geometry, its copies while it is built and uploaded, structures.
 constexpr double kPerTriangle = 200;
 constexpr double kFromFiles = 2;  // guess: the text, and the vertices before they are merged
 constexpr double kPerPixel = 64;  // bytes: pictures and their copies
@@ -78,7 +78,7 @@ double time_weight(const NamedWorkload& workload, bool timing, uint64_t pixels, 
   const double measured = workload.shader == "pt" ? needs.pt : workload.shader == "sh" ? needs.sh : needs.ao;
   const double simulating = std::max(0.1, measured - loading) * double(pixels * samples) / (128 * 128 * 2);
   return loading +
-         (timing ? simulating : simulating / 5);  // the functional machine is about five times faster
+         (timing ? simulating : simulating / 5);  // The functional machine is about five times faster.
 }
 
 uint64_t available_memory() {

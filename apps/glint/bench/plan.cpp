@@ -119,7 +119,7 @@ void mark_complete(const BenchTask& task, const std::string& key, const Process&
 }
 
 void unmark(const BenchTask& task) {
-  std::error_code ignored;  // the file may not exist
+  std::error_code ignored;  // The file may not exist.
   fs::remove(task.directory + "/" + kMark, ignored);
 }
 

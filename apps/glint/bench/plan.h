@@ -26,7 +26,7 @@ struct BenchTask {
   NamedWorkload workload;
   std::string directory;
   Process process;
-  bool is_complete = false;  // an earlier bench with the same key has run it
+  bool is_complete = false;  // An earlier bench with the same key has run it.
 };
 
 struct BenchPlan {

@@ -35,8 +35,8 @@ sigset_t watched_signals() {
 [[noreturn]] void become(char* const* arguments, const char* log, int pipe) {
   const sigset_t set = watched_signals();
   ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
-  ::setpgid(0, 0);                     // Ctrl-C goes only to the parent, who decides
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // the child ends when the parent dies
+  ::setpgid(0, 0);                     // Ctrl-C goes only to the parent, who decides.
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // The child ends when the parent dies.
   const int out = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0666), in = ::open("/dev/null", O_RDONLY);
   if (out >= 0 && in >= 0) {
     ::dup2(in, STDIN_FILENO);
@@ -130,10 +130,10 @@ bool ProcessPool::start(size_t index) {
   if (pid < 0) {
     ::close(ends[0]);
     if (children_.empty()) throw Error(Exit::Failure, "cannot start a process");
-    limits_.processes = uint32_t(children_.size());  // the system allows no more than these
+    limits_.processes = uint32_t(children_.size());  // The system allows no more than these.
     return false;
   }
-  ::setpgid(pid, pid);  // parent and child both set the group, because either may come first
+  ::setpgid(pid, pid);  // Parent and child both set the group, because either may come first.
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
   children_.push_back({index, pid, ends[0], Clock::now(), {}});
   process.state = Process::State::Running;
@@ -152,7 +152,7 @@ void ProcessPool::listen(int signals) {
     if (watched[i + 1].revents & POLLIN) hear(children_[i]);
     is_hung_up |= (watched[i + 1].revents & POLLHUP) != 0;
   }
-  if (is_hung_up) ::usleep(10000);  // the child is about to end, so this avoids busy waiting
+  if (is_hung_up) ::usleep(10000);  // The child is about to end, so this avoids busy waiting.
 }
 
 void ProcessPool::hear(Child& child) {
@@ -179,7 +179,7 @@ void ProcessPool::reap() {
     int status = 0;
     rusage usage{};
     if (::wait4(children_[i].pid, &status, WNOHANG, &usage) != children_[i].pid) continue;
-    end(i, status, uint64_t(usage.ru_maxrss) * 1024);  // ru_maxrss is in KiB (getrusage(2))
+    end(i, status, uint64_t(usage.ru_maxrss) * 1024);  // ru_maxrss is in KiB (getrusage(2)).
   }
 }
 

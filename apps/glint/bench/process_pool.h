@@ -26,8 +26,8 @@ struct Process {
 
 struct PoolLimits {
   uint32_t processes = 1;
-  // Bytes that all processes may take together; 0 sets no limit. A process that needs more than the limit
-  // runs alone.
+  // These are the bytes that all processes may take together; 0 sets no limit. A process that needs more than
+  // the limit runs alone.
   uint64_t memory = 0;
 };
 
@@ -40,7 +40,7 @@ class ProcessPool {
   std::function<void(size_t index)> on_end;
   std::function<void()> on_time;  // is called at most ten times a second
 
-  // Runs until all processes have ended. Returns false when SIGINT, SIGTERM or SIGHUP came; processes that
+  // Runs until all processes have ended. Returns false when SIGINT, SIGTERM or SIGHUP came. Processes that
   // were running then are Stopped.
   bool run();
 

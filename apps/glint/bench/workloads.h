@@ -32,7 +32,7 @@ const WorkloadInfo& find_workload(const std::string& name);
 struct NamedWorkload {
   std::string_view scene;   // "SHIP"
   std::string_view shader;  // "sh"
-  bool in_subset = false;   // it is in the paper's Table 2
+  bool in_subset = false;   // It is in the paper's Table 2.
   std::string name() const;
 };
 
@@ -40,9 +40,9 @@ struct NamedWorkload {
 // only pt.
 std::vector<NamedWorkload> lumibench();
 
-// Returns the workloads that names of suites (`lumibench`, `subset`), scenes, shader sets and workloads stand
-// for, in any case. Each appears once, in the order of lumibench(). Throws UserError with the nearest name
-// for an unknown name.
+// Returns the workloads that the given names stand for. A name is that of a suite (`lumibench`, `subset`), a
+// scene, a shader set or a workload, in any case of letters. Each workload appears once, in the order of
+// lumibench(). Throws UserError with the nearest name for an unknown name.
 std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names);
 
 // Holds scene and shader set of a name like SHIP_SH. Every scene may stand with every set.

@@ -41,7 +41,7 @@ class Bench {
     limits();
     announce();
     const bool whole = run_chosen(directory);
-    write_metrics(directory);  // the metrics are written even when nothing was left to run
+    write_metrics(directory);  // The metrics are written even when nothing was left to run.
     return conclude(directory, whole);
   }
 

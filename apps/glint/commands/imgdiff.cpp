@@ -61,7 +61,7 @@ std::string measures(const report::Picture& a, const report::ImageDifference& d,
   return report::table(rows, "<><");
 }
 
-// Tells where pixels are not finite, because no measure tells it.
+// Says where pixels are not finite, because no measure shows it.
 void tell_not_finite(const ImgdiffOptions& options, const report::Picture& a, const report::Picture& b,
                      const report::ImageDifference& d) {
   if (d.pixels_not_finite > 0)

@@ -31,7 +31,7 @@ std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
   return out;
 }
 
-// Returns the times of the presets that load. Why a preset does not load is told on stderr.
+// Returns the times of the presets that load. It says on stderr why a preset does not load.
 std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
   std::vector<isa::PresetTimes> out;
   for (const std::string& name : resources.config_names()) {

@@ -38,7 +38,7 @@ std::string preset_of(const Resources& resources, const report::RunRecord& facts
 report::PageRun page_run(const Resources& resources, const std::string& directory) {
   report::PageRun run{.directory = directory, .preset_name = {}, .preset = {}};
   const std::string path = directory + "/run.json";
-  if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong
+  if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong.
   report::RunRecord facts;
   facts.add_facts(read_file(path), path);
   run.preset_name = preset_of(resources, facts);

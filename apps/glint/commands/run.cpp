@@ -81,7 +81,7 @@ void add_run(Command app, Session& session) {
   add_scene_options(command, *options);
   add_launch_options(command, options->launch);
   command.add_option("--progress-fd", session.progress_descriptor, "Descriptor to write the progress to")
-      .group("");             // is used only by `bench`
+      .group("");             // Only `bench` uses it.
   command.last_value_wins();  // so that a script's own options can be overridden on the command line
   command.callback([&session, options, command] {
     finish_launch_options(command, options->launch);

@@ -21,7 +21,7 @@ double fence(const std::string& op, bool store, const pipeline::GpuParams& gpu) 
 }
 
 // Returns the cycles of a loop's back edge: the cycles of a turn with 64 multiply-adds, less those of another
-// 64 multiply-adds. The counter is ready long before.
+// 64 multiply-adds. The counter is ready long before the branch.
 double back_edge(const pipeline::GpuParams& gpu) {
   MicroKernel kernel;
   for (const char* f : {"%f10", "%f11", "%f12", "%f13"}) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr uint64_t kPlace = 1;  // marks a word that is a place in the buffer
 
-// Returns a ring of places that are `stride` bytes apart, in a fixed random order (by a generator of full
-// period over a power of two).
+// Returns a ring of places that are `stride` bytes apart. Their order is random and fixed: a generator of
+// full period over a power of two gives it.
 std::vector<uint64_t> ring(uint64_t bytes, uint64_t stride) {
   const uint64_t n = bytes / stride;
   std::vector<uint64_t> words(bytes / 8);

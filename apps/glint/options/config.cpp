@@ -25,7 +25,7 @@ SourceLocation place_of(const Config& config, std::string key, bool table_too) {
 }
 
 // Returns the place of the first quoted key in the message that the user has set. With `table_too`, a key
-// whose table has something set counts, too.
+// also counts when something in its table is set.
 SourceLocation place_of_quoted(const Config& config, const std::string& message, bool table_too) {
   for (size_t open = message.find('\''); open != std::string::npos;) {
     const size_t close = message.find('\'', open + 1);

@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 // A characterisation needs at least this many runs (report/characterize/feature_table.h).
 constexpr size_t kLeastRuns = 3;
-// Cycles that differ relatively by less than this are the same: tables have them to the last bit, or nearly.
+// Cycles that differ relatively by less than this are the same, because tables have them to the last bit, or
+// nearly.
 constexpr double kCyclesTold = 1e-9;
 
 void add_models(const std::string& path, const std::string& source, const std::string& folder,

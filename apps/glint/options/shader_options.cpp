@@ -24,7 +24,7 @@ std::string cache_folder(const std::string& kind) {
   if (const std::string folder = variable("XDG_CACHE_HOME"); folder.starts_with('/'))
     return folder + "/glint/" + kind;
   if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/" + kind;
-  return {};  // the cache is only in memory
+  return {};  // The cache is only in memory.
 }
 
 // Returns an identifier that changes with the executable, because another one may compile differently.

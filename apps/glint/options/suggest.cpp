@@ -21,7 +21,7 @@ std::string did_you_mean(const std::string& guess) {
 }  // namespace
 
 std::string suggestion(const Command& app, const std::vector<std::string>& arguments) {
-  std::optional<Command> command;  // the subcommand, once it was met
+  std::optional<Command> command;  // the subcommand, once it has been met
   for (size_t i = 1; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
     if (word.rfind("--", 0) == 0) {

@@ -14,7 +14,7 @@ bool names_script(const std::string& what);  // returns whether it is a path tha
 // Runs the scripts and returns 0 when all pass. For one script, it returns 1 for a failed expectation and 2
 // to 5 for an error of that kind. For several scripts, it returns 1 when any fails, else 3 when any is
 // unsupported. Scripts run on the timing machine when the command line names the mode timing, and otherwise
-// on the functional one.
+// on the functional machine.
 Exit run_amber(const Session& session, const std::vector<std::string>& scripts, const LaunchOptions& options);
 
 }  // namespace glint::app

@@ -116,7 +116,7 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
 bool names_pipeline(const std::string& what) {
   if (is_shader(what)) return true;
   if (!what.ends_with(".toml")) return false;
-  return pipeline::read_toml(what).find("kernel") == nullptr;  // a kernel's launch file has this key
+  return pipeline::read_toml(what).find("kernel") == nullptr;  // A kernel's launch file has this key.
 }
 
 Exit run_pipeline(const Session& session, const std::string& what, const LaunchOptions& options) {
