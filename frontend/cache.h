@@ -18,7 +18,7 @@ class ShaderCache {
   struct Options {
     std::string folder;  // made when first needed; empty: memory only
     std::string build;   // identifies the compiler; entries of another build are not found
-    // The folder's size limit in bytes. Above it, the files that were read longest ago go.
+    // This is the folder's size limit in bytes. Above it, the files that were read longest ago go.
     uint64_t max_bytes = uint64_t{256} << 20;
   };
   struct Counts {

@@ -27,15 +27,15 @@ struct BackendOptions {
   uint32_t max_registers = 64;  // 32-bit registers per thread; values beyond them spill to local memory
   bool schedule = true;         // latency-aware list scheduling
   bool contract = false;        // a * b + c becomes one fma where GLSL does not say `precise`
-  // True: rq.proceed is a call that preserves no register, because rays are traversed in shader code.
+  // With true, rq.proceed is a call that preserves no register, because rays are traversed in shader code.
   bool queries_call = false;
-  // Extra cycles the scheduler assumes before a predicate can guard an instruction. With more of them it
-  // places the comparisons for branches earlier.
+  // These are the extra cycles that the scheduler assumes before a predicate can guard an instruction. With
+  // more of them it places the comparisons for branches earlier.
   uint32_t guard_latency = 0;
 };
 
-// Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp; empty when
-// it is unknown.
+// Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp. Returns
+// nothing when the ending is unknown.
 std::optional<isa::Stage> stage_of_file(const std::string& path);
 
 // Runs glslang in process. Returns validated SPIR-V 1.6 words with OpLine debug information. Throws UserError
@@ -51,7 +51,7 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& text, const std::str
 std::vector<uint32_t> read_spirv(const std::string& path);
 bool is_spirv_file(const std::string& path);
 
-// Runs the pass list R1 of docs/frontend.md (inline all, scalarise, SSA), with validation before and after.
+// Runs the pass list R1 of spirv/simplify.cpp (inline all, scalarise, SSA), with validation before and after.
 // When the optimiser fails, `warnings` gets its messages and the module is returned unchanged.
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings);
 

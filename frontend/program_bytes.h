@@ -71,7 +71,7 @@ class ByteReader {
   void get(std::vector<T>& list) {
     uint64_t size = 0;
     get(size);
-    if (!has(size)) return;  // each element takes at least one byte
+    if (!has(size)) return;  // Each element takes at least one byte.
     list.resize(size);
     for (T& each : list) get(each);
   }

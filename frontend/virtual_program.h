@@ -62,7 +62,7 @@ struct VirtualProgram {
   std::vector<std::string> files;
   std::vector<isa::Scope> scopes;     // isa::Line::scope numbers them from 1
   std::vector<isa::SpirvLine> spirv;  // isa::Line::spirv numbers them from 1
-  // The bytes of variables and payloads. Spills and saved values are placed after them.
+  // These are the bytes of variables and payloads. Spills and saved values are placed after them.
   uint32_t local_bytes = 0;
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
@@ -75,8 +75,8 @@ struct VirtualProgram {
   }
 };
 
-// Schedules each block for latency, allocates registers (linear scan, with spills to local memory), saves and
-// restores live values around calls, lays out the code and resolves labels.
+// Schedules each block for latency, allocates registers (graph colouring, with spills to local memory), saves
+// and restores live values around calls, lays out the code and resolves labels.
 struct BackendOptions;
 isa::Program assemble(VirtualProgram program, const BackendOptions& options);
 

@@ -8,8 +8,8 @@
 
 namespace glint::frontend {
 
-// Gives the physical place of each virtual register: a register number (of the low half for B64) or a
-// predicate number.
+// Gives the physical place of each virtual register: a register number (for B64, the number of the low half)
+// or a predicate number.
 struct Allocation {
   std::vector<uint16_t> slot;
 };

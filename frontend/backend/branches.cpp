@@ -168,7 +168,7 @@ class BranchCleaner {
       code_[b].erase(code_[b].begin());
       from.erase(ssy);
       changed = true;
-      if (from.empty() || code_[b].empty()) break;  // the edges of this block now lead elsewhere
+      if (from.empty() || code_[b].empty()) break;  // The edges of this block now lead elsewhere.
     }
     return changed;
   }

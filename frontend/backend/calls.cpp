@@ -151,7 +151,7 @@ void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops) {
 void expand_calls(VirtualProgram& program, Allocation& allocation, const Ops& ops) {
   const std::vector<CallRegion> regions = find_call_regions(program, find_liveness(program));
   const std::vector<bool> enters_inside = enters_in_region(program);
-  // The registers moved at each SaveLive and RestoreLive.
+  // Holds the registers that are moved at each SaveLive and RestoreLive.
   std::map<std::pair<BlockId, size_t>, std::vector<uint16_t>> moved;
   const uint32_t save_area = round_up(program.local_bytes);
   uint32_t frame = save_area;

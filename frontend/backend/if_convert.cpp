@@ -93,7 +93,7 @@ class Converter {
     for (size_t m = 0; m < arm.size(); ++m) {
       if (!ops_.is_move(arm[m].op) || !is_register(arm[m].operands[1])) continue;
       const VirtualRegister to = arm[m].operands[0].reg, from = arm[m].operands[1].reg;
-      if (count(from) != 2) continue;  // one definition and this use
+      if (count(from) != 2) continue;  // It has one definition and this use.
       for (size_t d = m; d-- > 0;) {
         bool defines = false, touches = false;
         for_each_def(arm[d], [&](VirtualRegister r) {

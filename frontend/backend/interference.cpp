@@ -7,7 +7,7 @@
 namespace glint::frontend {
 
 uint32_t blocked_by(RegisterClass self, RegisterClass neighbour) {
-  // A pair takes two single registers; a single register spoils one pair; a pair takes one pair.
+  // A pair takes two single registers, a single register spoils one pair, and a pair takes one pair.
   return self == RegisterClass::B32 && neighbour == RegisterClass::B64 ? 2 : 1;
 }
 
@@ -128,7 +128,7 @@ bool InterferenceGraph::safe_to_merge(VirtualRegister a, VirtualRegister b, uint
       visited_[n] = visit_;
       if (neighbours_[n].size() + 1 < slots_for(classes_[n], max_registers)) continue;
       significant += blocked_by(self, classes_[n]);
-      if (significant >= slots) return false;  // decides most moves of large shaders after a few neighbours
+      if (significant >= slots) return false;  // This decides most moves of large shaders early.
     }
   return true;
 }

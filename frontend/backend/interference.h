@@ -32,7 +32,7 @@ enum class Coalescing : uint8_t {
   Safe,
 };
 
-// The interference graph of one register file. After coalescing, a merged group is known by its
+// Holds the interference graph of one register file. After coalescing, a merged group is known by its
 // representative.
 class InterferenceGraph {
  public:

@@ -89,10 +89,10 @@ Liveness find_liveness(const VirtualProgram& program) {
 }
 
 std::vector<float> block_weights(const VirtualProgram& program) {
-  constexpr float kTripsOfALoop = 8.0f;  // Choice: unknown trip counts count as 8
+  constexpr float kTripsOfALoop = 8.0f;  // Choice: unknown trip counts count as 8.
   constexpr float kMost = 8.0f * 8.0f * 8.0f * 8.0f;
   std::vector<float> weights(program.blocks.size(), 1.0f);
-  // Last block of the loop that a block heads.
+  // Holds the last block of the loop that a block heads.
   std::vector<BlockId> last_latch(program.blocks.size(), kNoBlock);
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     for (BlockId next : program.blocks[b].successors)

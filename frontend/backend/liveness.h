@@ -15,7 +15,7 @@
 
 namespace glint::frontend {
 
-// A set of virtual registers with one bit for each.
+// Holds a set of virtual registers, with one bit for each.
 class RegisterSet {
  public:
   RegisterSet() = default;

@@ -226,7 +226,7 @@ class Sweep {
 // Turns unpack {x, y} of a packed pair into two moves.
 bool unpack_packs(VirtualProgram& program, const Ops& ops) {
   std::vector<uint32_t> definitions(program.registers.size());
-  // Sources of the pack that defines a register.
+  // Holds the sources of the pack that defines a register.
   std::vector<std::vector<Operand>> packed(program.registers.size());
   for (const VirtualBlock& block : program.blocks)
     for (const VirtualInst& inst : block.code)

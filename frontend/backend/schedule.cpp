@@ -353,7 +353,7 @@ void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_la
   // Register allocation needs this room in addition to the live words: the stack pointer, gaps between pairs,
   // and the registers of spill code.
   constexpr uint32_t kReserve = 4;
-  constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // longer runs are cut: the search is quadratic
+  constexpr size_t kShortestRun = 3, kLongestRun = 2000;  // Longer runs are cut: the search is quadratic.
   const uint32_t words = max_registers > 2 * kReserve ? max_registers - kReserve : max_registers / 2;
   // One predicate is kept free for spill code, too.
   const Pressure comfortable{int(std::max(words, 1u)), isa::kNumPredicates - 1};

@@ -1,4 +1,4 @@
-// Renames a set of extended instructions and the number of its one instruction.
+// Renames a set of extended instructions, and renumbers its one instruction.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/glsl/debug_print.h"
 

@@ -224,7 +224,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
   options.disableOptimizer = true;
-  options.validate = false;  // validated below, with scalar block layout
+  options.validate = false;  // It is validated below, with scalar block layout.
   std::vector<uint32_t> words;
   spv::SpvBuildLogger log;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);

@@ -1,4 +1,5 @@
-// Lowers comparisons and differences of pointers as addresses, and hints to optimisers that compute nothing.
+// Lowers comparisons and differences of pointers as addresses. It also lowers hints to optimisers, which
+// compute nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 

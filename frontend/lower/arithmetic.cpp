@@ -34,8 +34,8 @@ void binary(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) 
   l.set(inst.result, std::move(result));
 }
 
-// Lowers a shift, whose count may have another width than the base. Choice: a count of the base's width or
-// more shifts all bits out, as in PTX.
+// Lowers a shift, whose count may have another width than the base. Choice: a count that is not below the
+// base's width shifts all bits out, as in PTX.
 void shift(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
   Emitter& e = l.emit();
   const Part part = l.part_of(inst.type), count_part = l.part_of(l.type_of(inst.operands[1]));
@@ -186,7 +186,7 @@ void extended(ModuleLowering& l, const Instruction& inst, const LoweringRow& row
   const Operands a = l.value(inst.operands[0]), b = l.value(inst.operands[1]);
   Operands first, second;
   for (size_t i = 0; i < a.size(); ++i) {
-    if (bytes_of(part) < 4 && inst.op != spv::Op::OpISubBorrow) {  // 32 bits hold the whole result
+    if (bytes_of(part) < 4 && inst.op != spv::Op::OpISubBorrow) {  // 32 bits hold the whole result.
       const bool is_signed = inst.op == spv::Op::OpSMulExtended;
       const Operand whole =
           e.value(row.name32, {widened(e, part, a[i], is_signed), widened(e, part, b[i], is_signed)});

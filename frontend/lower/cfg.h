@@ -13,8 +13,8 @@
 
 namespace glint::frontend {
 
-// A region whose lanes meet again. It is a selection or loop, which ends at its merge block, or the part of a
-// loop before its continue target, which ends at that target.
+// Describes a region whose lanes meet again. It is a selection or loop, which ends at its merge block, or the
+// part of a loop before its continue target, which ends at that target.
 struct Construct {
   uint32_t header = 0;  // index of a block
   bool is_continue = false;

@@ -161,7 +161,7 @@ void ControlFlow::finish_shader(spv::Op op) {
     case spv::Op::OpReturn:
       emit_.end(leave);
       break;
-    case spv::Op::OpUnreachable:  // a valid program never reaches it
+    case spv::Op::OpUnreachable:  // A valid program never reaches it.
       emit_.effect("trap", {});
       emit_.end(leave);
       break;

@@ -27,7 +27,7 @@ size_t num_destinations(const VirtualInst& inst) {
   size_t slots = 0;
   for (isa::OperandKind kind : isa::op_table()[inst.op].operands.view())
     if (isa::is_destination(kind)) slots += size_t(isa::slots_of(kind));
-  return slots;  // destinations come first in every row
+  return slots;  // Destinations come first in every row.
 }
 
 // Turns an atomic whose old value nobody reads into a reduction, which hardware sends without waiting for an

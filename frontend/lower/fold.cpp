@@ -32,7 +32,7 @@ Folded fold_signed(std::string_view op, int32_t a, int32_t b) {
   if (b == 0) return no();
   if (op == "div.u32") return yes(uint32_t(a) / uint32_t(b));
   if (op == "rem.u32") return yes(uint32_t(a) % uint32_t(b));
-  if (b == -1) return no();  // the lowest number has no negative counterpart
+  if (b == -1) return no();  // The lowest number has no negative counterpart.
   if (op == "div.s32") return yes(uint32_t(a / b));
   if (op == "rem.s32") return yes(uint32_t(a % b));
   return no();

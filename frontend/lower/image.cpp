@@ -95,7 +95,7 @@ ImageOperands image_operands(const Instruction& inst, size_t at) {
   if (has(Mask::Offset)) result.offset = inst.operands.at(at++);
   if (has(Mask::ConstOffsets)) result.offsets = inst.operands.at(at++);
   if (has(Mask::Sample)) result.sample = inst.operands.at(at++);
-  return result;  // the other operands belong to the memory model
+  return result;  // The other operands belong to the memory model.
 }
 
 bool has_halves(ModuleLowering& l, Id id) {
@@ -159,7 +159,7 @@ void write(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   if (has_halves(l, type)) texel = to_halves(l, texel[0]);
   for (size_t i = 0; i < 4; ++i) operands.push_back(i < texel.size() ? texel[i] : Operand::value(0));
   l.emit().effect(fmt::format("sust.p.{}.v4.b32.{}", geometry->name, outside(l, type)), std::move(operands));
-  l.note_store(PointerSpace::Global);  // Choice: images and buffers may share memory
+  l.note_store(PointerSpace::Global);  // Choice: images and buffers may share memory.
 }
 
 void fetch(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {

@@ -65,7 +65,7 @@ const std::vector<Part>& Layout::parts(Id id) {
       }
       break;
     case Kind::RuntimeArray:
-      break;  // never a value; as a block's last member it is reached only by address
+      break;  // It is never a value; as a block's last member it is reached only by address.
     case Kind::Pointer:
       if (is_address(id)) result.push_back(scalar(id));
       break;

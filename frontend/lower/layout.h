@@ -85,7 +85,7 @@ class Layout {
 
   const std::vector<Part>& parts(Id type);
   uint32_t num_parts(Id type) { return uint32_t(parts(type).size()); }
-  // Number of the first part of member, element or column `member`.
+  // Returns the number of the first part of member, element or column `member`.
   uint32_t first_part(Id type, uint32_t member);
   Id member_type(Id type, uint32_t member) const;
 

@@ -190,7 +190,7 @@ const Operands& ModuleLowering::value(Id id) {
   if (const auto it = values_.find(id); it != values_.end()) return it->second;
   if (module_.constants.count(id)) return values_[id] = constant_parts(id);
   if (const std::optional<Operand> address = address_of(id)) return values_[id] = {*address};
-  unsupported(fmt::format("{} as a value", module_.name_of(id)));  // a pointer is used as a value
+  unsupported(fmt::format("{} as a value", module_.name_of(id)));  // A pointer is used as a value.
   const auto type = type_of_id_.find(id);
   const uint32_t parts = type == type_of_id_.end() ? 1 : layout_.num_parts(type->second);
   return values_[id] = Operands(std::max(parts, 1u), Operand::value(0));
@@ -251,7 +251,7 @@ Operands ModuleLowering::constant_parts(Id id) {
       unsupported(name_of_opcode(uint32_t(constant.op)), constant.line);
       [[fallthrough]];
     case spv::Op::OpConstantNull:
-    case spv::Op::OpUndef:  // Choice: an undefined value is 0
+    case spv::Op::OpUndef:  // Choice: an undefined value is 0.
       return Operands(layout_.num_parts(constant.type), Operand::value(0));
   }
 }

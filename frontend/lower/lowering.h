@@ -29,9 +29,9 @@ namespace glint::frontend {
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
                                 const std::string& entry_point = {}, bool contract = false);
 
-// Says what memory a pointer points into. AttributePair: hit attributes of two floats, which hit shaders find
-// in %hit.u and %hit.v. Resource: a descriptor; for a buffer only while the index into an array of
-// descriptors is missing. Texel: a texel of a storage image, for atomics.
+// Says what memory a pointer points into. An AttributePair is hit attributes of two floats, which hit shaders
+// find in %hit.u and %hit.v. A Resource is a descriptor; a buffer is one only while the index into an array
+// of descriptors is missing. A Texel is a texel of a storage image, for atomics.
 enum class PointerSpace : uint8_t {
   Local,
   Global,
@@ -48,7 +48,8 @@ enum class PointerSpace : uint8_t {
 struct Pointer {
   Id type = 0;  // type of the pointee
   PointerSpace space = PointerSpace::Nowhere;
-  // Local, Shared, Constant: 32-bit address; Global: 64-bit address; Resource, RayQuery: index.
+  // Local, Shared and Constant have a 32-bit address here, Global has a 64-bit address, and Resource and
+  // RayQuery have an index.
   Operand base = Operand::value(0);
   int64_t displacement = 0;       // bytes; for Builtin and AttributePair, parts
   uint32_t alignment = 16;        // of base, in bytes
@@ -56,8 +57,8 @@ struct Pointer {
   uint32_t component_stride = 0;  // bytes; not 0 in a column of a row-major matrix
   MatrixLayout matrix;
   Id variable = 0;                         // variable that the pointer leads to
-  bool is_constant = false;                // no shader writes the memory
-  bool is_volatile = false;                // two loads may give different values
+  bool is_constant = false;                // No shader writes the memory.
+  bool is_volatile = false;                // Two loads may give different values.
   Operand part_index = Operand::value(0);  // Builtin, AttributePair: dynamic part index
   Operand entry;                           // Global, in an array of buffers: address of the descriptor
   Operand table;                           // Resource, from a pointer value: address of descriptor 0

@@ -13,10 +13,11 @@ constexpr float kPiRest = -8.74227800037e-8f;  // pi - kPi
 constexpr float kHalfPi = 1.57079632679490f;
 constexpr float kHalfPiRest = -4.37113900019e-8f;
 
-// Coefficients of asin(x) = x + x z P(z) with z = x^2 <= 1/4; the relative error is below 5.1e-9.
+// These are the coefficients of asin(x) = x + x z P(z) with z = x^2 <= 1/4; the relative error is below
+// 5.1e-9.
 constexpr float kAsin[] = {0.16666750609874725f, 0.07495343685150146f, 0.04546626657247543f,
                            0.02419474720954895f, 0.04214620217680931f};
-// Coefficients of atan(x) = x + x z P(z) with z = x^2 <= 1; the relative error is below 2.7e-9.
+// These are the coefficients of atan(x) = x + x z P(z) with z = x^2 <= 1; the relative error is below 2.7e-9.
 constexpr float kAtan[] = {-0.33333301544189453f, 0.19998574256896973f,  -0.14264485239982605f,
                            0.10953346639871597f,  -0.08406593650579453f, 0.05800812318921089f,
                            -0.03122559003531933f, 0.01093909703195095f,  -0.0017988847102969885f};

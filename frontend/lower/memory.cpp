@@ -223,7 +223,7 @@ uint32_t ModuleLowering::local_offset(Id variable) {
   program_.local_bytes = at + layout_.size(module_.type(type_of(variable)).element);
   const auto global = module_.variables.find(variable);
   if (global != module_.variables.end() && global->second.storage == spv::StorageClass::HitObjectAttributeNV)
-    program_.local_bytes = at + 64;  // ho.attributes stores all 64 bytes (docs/abi.md)
+    program_.local_bytes = at + 64;  // ho.attributes stores all 64 bytes (docs/abi.md).
   return frame_[variable] = at;
 }
 

@@ -45,7 +45,7 @@ Pointer ModuleLowering::interface_pointer(const Variable& variable, Pointer p) {
     p.space = PointerSpace::Global;
     p.base =
         emitter_.value("pack.b64", {Operand::of(isa::Special::Record), Operand::of(isa::Special::RecordHi)});
-    p.is_constant = true;  // in Vulkan, shaders only read the shader record
+    p.is_constant = true;  // In Vulkan, shaders only read the shader record.
     return p;
   }
   if (variable.storage == Storage::HitAttributeKHR) {

@@ -128,7 +128,7 @@ Operand attribute_buffers_address(ModuleLowering& l) {
 void forget_after_call(ModuleLowering& l) {
   l.note_store(PointerSpace::Local);
   l.note_store(PointerSpace::Global);
-  l.emit().forget();  // a value that is computed again need not be saved
+  l.emit().forget();  // A value that is computed again need not be saved.
 }
 
 void lower_trace(ModuleLowering& l, std::span<const uint32_t> arguments, const Pointer& payload,

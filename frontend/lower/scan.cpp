@@ -74,7 +74,7 @@ Operand group_mask(Emitter& e, const Lanes& lanes) {
   return lanes.partition ? *lanes.partition : cluster_mask(e, lanes.cluster);
 }
 
-// Combines predicates by and, or, exclusive or; one ballot has all the information.
+// Combines predicates by and, or, or exclusive or. One ballot has all the information.
 Operand combine_bools(ModuleLowering& l, spv::Op op, const Operand& x, const Lanes& lanes) {
   Emitter& e = l.emit();
   Operand range = e.value("and.b32", {group_mask(e, lanes), e.fresh("activemask.b32", {})});
@@ -87,8 +87,8 @@ Operand combine_bools(ModuleLowering& l, spv::Op op, const Operand& x, const Lan
 }
 
 // Emits an inclusive scan in five steps of pointer jumping, or fewer in small clusters. Whichever lanes
-// execute, the member before a lane is the highest bit below it. Choice: the order in which floats are
-// combined, which SPIR-V leaves open.
+// execute, the member before a lane is the highest bit below it. Choice: floats are combined in the order of
+// these steps; SPIR-V leaves the order open.
 Operand inclusive(ModuleLowering& l, std::string_view name32, Part part, Operand x, Operand before,
                   uint32_t cluster) {
   Emitter& e = l.emit();

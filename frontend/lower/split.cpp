@@ -47,7 +47,7 @@ Operand ldexp(Arithmetic& a, Operand x, Operand n) {
 Split frexp(Arithmetic& a, Operand x) {
   const Format& format = a.is_double() ? kDouble : kSingle;
   Emitter& e = a.emit();
-  const int up = format.fraction_bits + 1;  // subnormals are first made normal
+  const int up = format.fraction_bits + 1;  // Subnormals are first made normal.
   const double smallest_normal = a.is_double() ? 0x1p-1022 : 0x1p-126;
   const Operand magnitude = a.magnitude(x);
   const Operand is_subnormal = a.less(magnitude, a.constant(smallest_normal));

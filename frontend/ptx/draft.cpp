@@ -48,7 +48,7 @@ std::vector<VirtualBlock> lay_out(Draft draft) {
     DraftBlock& block = draft.blocks[draft.layout[i]];
     out[i].name = block.name;
     out[i].code = std::move(block.code);
-    block.code.resize(out[i].code.empty() ? 0 : 1);  // its size still tells whether the block had code
+    block.code.resize(out[i].code.empty() ? 0 : 1);  // Its size still tells whether the block had code.
     append_end(out[i], block, draft.blocks, i + 1 < draft.layout.size() ? draft.layout[i + 1] : kNoBlock);
     for (VirtualInst& inst : out[i].code)
       if (inst.target != kNoBlock) inst.target = place[inst.target];

@@ -30,7 +30,8 @@ struct DraftBlock {
 
 struct Draft {
   std::vector<DraftBlock> blocks;  // any order
-  // The order in memory. The first block is the entry, which ends in a Goto and to which no block leads.
+  // This is the order in memory. The first block is the entry, which ends in a Goto and to which no block
+  // leads.
   std::vector<BlockId> layout;
 };
 

@@ -19,7 +19,7 @@ Edges reversed(const Edges& next);
 // root, these are the immediate post-dominators.
 std::vector<BlockId> immediate_dominators(const Edges& next, BlockId root);
 
-// A natural loop, which is entered only through its head.
+// Holds a natural loop, which is entered only through its head.
 struct Loop {
   BlockId head = kNoBlock;
   Blocks body;  // contains the head

@@ -31,7 +31,7 @@ struct Symbol {
   VirtualRegister reg = kNoRegister;
   std::vector<VirtualRegister> elements;
   VariableSpace space = VariableSpace::Global;
-  // Global: the place of the variable's address in the constant bank, from kPushConstantOffset.
+  // For Global, this is the place of the variable's address in the constant bank, from kPushConstantOffset.
   uint64_t address = 0;
   BlockId block = kNoBlock;
   const std::vector<std::string>* targets = nullptr;

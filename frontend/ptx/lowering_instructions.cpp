@@ -12,7 +12,7 @@ using isa::OperandKind;
 
 namespace {
 
-constexpr const char* kCarry = "%carry";  // PTX text cannot contain this name
+constexpr const char* kCarry = "%carry";  // PTX text cannot contain this name.
 
 // Returns the types in an opcode, in order.
 std::vector<Type> types_of(const Words& words) {
@@ -296,7 +296,7 @@ void KernelLowering::lower_address_conversion(const Instruction& inst) {
   Words words = inst.words;
   for (std::string& word : words) word = word.substr(0, word.find("::"));
   if (has_word(words, "global") && has_word(words, "u64")) {
-    Instruction move = inst;  // a generic address of global memory equals the global address
+    Instruction move = inst;  // A generic address of global memory equals the global address.
     move.words = {"mov", "b64"};
     return lower_generic(move);
   }

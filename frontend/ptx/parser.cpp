@@ -144,7 +144,7 @@ class Parser {
       (directive == "maxntid" ? f.largest_block : f.required_block) = size;
     } else if (directive == "pragma") {
       skip_to_semicolon();
-    } else {  // hints: .minnctapersm 2, .maxnreg 64, .noreturn, .abi_preserve 8 ...
+    } else {  // These are hints: .minnctapersm 2, .maxnreg 64, .noreturn, .abi_preserve 8 ...
       while (in_.is(Token::Kind::Integer) || in_.is_mark(",")) in_.next();
     }
   }
@@ -176,7 +176,7 @@ class Parser {
       } else if (word == "v2" || word == "v4") {
         d.vector = word == "v2" ? 2 : 4;
       } else if (word == "ptr") {
-        is_pointer_ = true;  // the words that follow describe what the pointer points to
+        is_pointer_ = true;  // The words that follow describe what the pointer points to.
       } else if (word == "attribute") {
         in_.expect("(");
         while (!in_.at_end() && !in_.accept(")")) in_.next();

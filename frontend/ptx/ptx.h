@@ -31,7 +31,7 @@ struct ModuleVariable {
     uint64_t addend = 0;
   };
   std::string name;
-  // True: the variable lies in the constant bank at `offset`. False: it lies in global memory.
+  // With true, the variable lies in the constant bank at `offset`. With false, it lies in global memory.
   bool is_constant = false;
   uint32_t offset = 0;  // global: place in the constant bank of its 8-byte address
   uint64_t bytes = 0;
@@ -49,11 +49,11 @@ struct Kernel {
 
 struct PtxOptions {
   BackendOptions backend;
-  // A mul followed by an add or sub, all without a rounding modifier, becomes fma where nothing else reads
+  // Makes a mul followed by an add or sub, all without a rounding modifier, one fma where nothing else reads
   // the product. Choice: PTX allows it ("may be optimized aggressively"), and NVIDIA's assembler does it
   // unless -fmad=false is given.
   bool contract = true;
-  // The program is changed as by the hardware's assembler (frontend/ptx/machine.h), which gives fewer
+  // Changes the program as the hardware's assembler does (frontend/ptx/machine.h), which gives fewer
   // instructions and the same results.
   bool shape = true;
 };

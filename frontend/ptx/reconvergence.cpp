@@ -296,7 +296,7 @@ class Reconvergence {
         } else {
           const BlockId between = new_block("", to, from.line);
           push_all(block(between).code, edge.enters, block(edge.from).line);
-          DraftBlock& again = block(edge.from);  // new_block() may have moved the block
+          DraftBlock& again = block(edge.from);  // new_block() may have moved the block.
           (edge.taken ? again.taken : again.next) = between;
           behind_[edge.from].push_back(between);
         }

@@ -44,7 +44,7 @@ int rank_of(const std::string& word) {
                                                            "rp",     "rna",     "ftz", "sat",       "relu",
                                                            "NaN",    "xorsign", "abs", "satfinite", "oob"};
   const auto at = std::find(kOrder.begin(), kOrder.end(), word);
-  if (at == kOrder.end()) return 100;  // types come last
+  if (at == kOrder.end()) return 100;  // Types come last.
   const int rank = int(at - kOrder.begin());
   return rank >= 2 && rank <= 6 ? 2 : rank;
 }

@@ -12,7 +12,8 @@
 
 namespace glint::frontend::ptx {
 
-// A fundamental type: b8..b128, u8..u64, s8..s64, f16, bf16, f16x2, bf16x2, f32, f64, pred and similar ones.
+// Holds a fundamental type: b8..b128, u8..u64, s8..s64, f16, bf16, f16x2, bf16x2, f32, f64, pred and similar
+// ones.
 struct Type {
   char kind = 'b';  // b, u, s, f; p for pred
   uint32_t bits = 32;
@@ -23,7 +24,8 @@ std::optional<Type> type_of(const std::string& word);
 struct Operand {
   enum class Kind : uint8_t {
     Sink,  // _
-    // A register, variable, label or function. `element` is the x of %tid.x, and `offset` the 4 of `x + 4`.
+    // Names a register, variable, label or function. `element` is the x of %tid.x, and `offset` the 4 of `x +
+    // 4`.
     Name,
     Integer,
     Float32,

@@ -15,7 +15,7 @@
 namespace glint::frontend::ptx {
 namespace {
 
-constexpr int64_t kTurns = 4;  // turns unrolled at a time; of the rest, two
+constexpr int64_t kTurns = 4;  // turns unrolled at a time; of the rest, two at a time
 // Limits the instructions of a body. Choice: with 64, the counts of the calibration kernels, in which all
 // lanes count alike, match an H200. In kernels whose lanes may count differently, the H200's compiler has
 // copied a body of 20 instructions and left one of 45 alone (h_spmv, h_chase of bench/held_out).
@@ -303,7 +303,7 @@ class CountedLoop {
   bool counts_up_ = false;
   std::map<int64_t, VirtualRegister> limits_;   // by number of turns, if the bound is in a register
   std::map<VirtualRegister, int> definitions_;  // number of definitions in the loop, by register
-  // The defined registers that the next turn or other blocks read.
+  // Holds the defined registers that the next turn or other blocks read.
   std::set<VirtualRegister> kept_;
   std::map<VirtualRegister, int64_t> steps_;          // constant that a turn adds
   std::map<VirtualRegister, int64_t> stepped_;        // turns that the copies so far have done

@@ -14,8 +14,7 @@ struct BlockMember;
 
 struct BlockType {
   enum class Kind : uint8_t { Numbers, Array, Struct } kind = Kind::Numbers;
-  // The fields `number` and `offsets` hold a scalar, vector or matrix; a matrix is stored column after
-  // column.
+  // `number` and `offsets` describe a scalar, vector or matrix. A matrix is stored column after column.
   std::string number;                // "f32", "u8", "s64", "f16"; an address is "u64"
   std::vector<uint32_t> offsets;     // byte offset of each number
   uint32_t count = 0, stride = 0;    // Array: elements (0: a runtime array) and bytes from one to the next

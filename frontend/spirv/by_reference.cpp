@@ -121,12 +121,12 @@ class Copies {
 
   const std::vector<uint32_t>& words_;
   std::vector<Code> code_;
-  // The ids of variables and parameters in Function storage. The value is true for a variable without
+  // Holds the ids of variables and parameters in Function storage. The value is true for a variable without
   // initialiser.
   std::map<uint32_t, bool> locals_;
   std::map<uint32_t, uint32_t> uses_;
   std::set<size_t> dropped_;  // first words of instructions
-  // By the first word of a call, the words of its arguments and the variables to pass.
+  // Maps the first word of a call to the words of its arguments and the variables to pass.
   std::map<size_t, std::map<size_t, uint32_t>> arguments_;
 };
 

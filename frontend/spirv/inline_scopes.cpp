@@ -182,8 +182,8 @@ std::optional<Words> with_inline_scopes(const Words& words) {
   const auto add = [&](const Words& more) { out.insert(out.end(), more.begin(), more.end()); };
   uint32_t function = 0;
   bool has_strings = false;
-  // The place in `out` where a block's instructions begin, after phis and variables. It is 0 outside of a
-  // block and after the block was marked.
+  // This is the place in `out` where a block's instructions begin, after phis and variables. It is 0 outside
+  // of a block and after the block was marked.
   size_t body = 0;
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
     const spv::Op op = op_of(words[i]);

@@ -40,7 +40,7 @@ class Rewrite {
   void for_each(const Visit& visit) const {
     for (size_t at = kHeaderWords; at < words_.size();) {
       const size_t length = words_[at] >> 16;
-      if (length == 0 || length > words_.size() - at) return;  // the validator reports this
+      if (length == 0 || length > words_.size() - at) return;  // The validator reports this.
       visit(spv::Op(words_[at] & 0xffff), std::span(words_).subspan(at, length));
       at += length;
     }

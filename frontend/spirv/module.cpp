@@ -307,7 +307,7 @@ bool Parser::declare_type(const Instruction& inst) {
   using Kind = Type::Kind;
   const auto& args = inst.operands;
   if (inst.type != 0 || inst.result == 0) return false;
-  Type& type = module_.types[inst.result];  // a decoration may have made the entry already
+  Type& type = module_.types[inst.result];  // A decoration may have made the entry already.
   type.op = inst.op;
   type.name = module_.names.count(inst.result) ? module_.names[inst.result] : "";
   switch (inst.op) {

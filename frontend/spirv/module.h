@@ -48,7 +48,8 @@ struct Type {
   spv::ImageFormat format{};    // Image
   bool is_storage_image = false, is_arrayed = false, is_multisampled = false;  // Image
   bool is_block = false;  // Struct: decorated Block or BufferBlock
-  // Struct: decorated BufferBlock, which makes a storage buffer of storage class Uniform.
+  // This is true for a Struct that is decorated BufferBlock, which makes a storage buffer of storage class
+  // Uniform.
   bool is_buffer_block = false;
   struct Member {
     Id type = 0;

@@ -94,7 +94,7 @@ constexpr FormatName kFormatNames[] = {
     {Rg8ui, "rg8ui"},
     {R16ui, "r16ui"},
     {R8ui, "r8ui"},
-    {R64ui, "rg32ui"},  // a 64-bit texel is stored as two halves
+    {R64ui, "rg32ui"},  // A 64-bit texel is stored as two halves.
     {R64i, "rg32ui"},
 };
 

@@ -32,8 +32,8 @@ struct Binding {
   isa::ImageShape shape = isa::ImageShape::D2;  // of images
   std::string texel{};                          // of images: "f32", "u32", "s32"
   bool multisampled = false;                    // of images
-  // The format of a storage image as GLSL names it, such as "r32ui". It is empty when the shader declares no
-  // format.
+  // This is the format of a storage image as GLSL names it, such as "r32ui". It is empty when the shader
+  // declares no format.
   std::string format{};
   bool operator==(const Binding& o) const {  // compares everything but the layouts
     return set == o.set && binding == o.binding && kind == o.kind && name == o.name && count == o.count;
@@ -48,8 +48,8 @@ struct Reflection {
   uint32_t push_constant_bytes = 0;
   uint32_t incoming_payload_bytes = 0;  // scalars are packed, and a bool has 4 bytes
   uint32_t largest_payload_bytes = 0;   // of the payloads that the shader declares for its own traces
-  // The scalars of the payload that the shader reads, and of each payload that it declares for its own
-  // traces. Each scalar is written as a letter (f float, i integer, b bool) and a digit (its bytes).
+  // These are the scalars of the payload that the shader reads, and of each payload that it declares for its
+  // own traces. Each scalar is written as a letter (f float, i integer, b bool) and a digit (its bytes).
   std::string incoming_payload;
   std::vector<std::string> handed_payloads;
   uint32_t attribute_bytes = 0;

@@ -113,7 +113,7 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
   if (!optimizer.RegisterPassesFromFlags(passes))
     throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + *messages);
   spvtools::OptimizerOptions options;
-  options.set_run_validator(false);  // the module is validated later, with the extensions in place
+  options.set_run_validator(false);  // The module is validated later, with the extensions in place.
   if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
   return with_extensions(std::move(output), extensions);
 }

@@ -13,7 +13,7 @@
 namespace glint::frontend {
 namespace {
 
-// The depth limit of scopes. A module beyond it has scopes that contain themselves.
+// This limits the depth of scopes. A module beyond it has scopes that contain themselves.
 constexpr int kMaxDepth = 1000;
 
 // Returns true for names, lines and sources, which do not take part in the computation.

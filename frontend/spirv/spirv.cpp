@@ -153,7 +153,7 @@ std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string&
     if (done && validate_spirv(words).empty()) return words;
     if (newest.empty()) newest = std::move(words);
   }
-  return newest;  // the caller reports what is wrong with it
+  return newest;  // The caller reports what is wrong with it.
 }
 
 std::string name_of_opcode(uint32_t opcode) {

@@ -44,7 +44,7 @@ class Rewriter {
       }
       if (!calls && op != spv::Op::OpTraceNV && op != spv::Op::OpTraceMotionNV) return;
       const std::optional<uint32_t> variable = find(out.back(), calls);
-      if (!variable) return;  // the lowering reports it
+      if (!variable) return;  // The lowering reports it.
       out.back() = *variable;
       const spv::Op standard = calls                      ? spv::Op::OpExecuteCallableKHR
                                : op == spv::Op::OpTraceNV ? spv::Op::OpTraceRayKHR
