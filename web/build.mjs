@@ -6,7 +6,7 @@ import { copyFileSync, readFileSync } from "node:fs";
 const read = (path) => readFileSync(new URL(path, import.meta.url), "utf8");
 const version = (name) => JSON.parse(read(`node_modules/${name}/package.json`)).version;
 
-// Both licences ask for their notices in every copy; a report is one.
+// Both licences ask for their notices in every copy, and a report is a copy.
 const banner = `/*!
 Glint report. SPDX-License-Identifier: Apache-2.0
 

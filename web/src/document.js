@@ -1,11 +1,11 @@
-// Reads the page's document: undoes what report/page/columns.h did, run by run, and hands each run its pictures.
+// Reads the page's document. It undoes what report/page/columns.h did, run by run, and hands each run its pictures.
 // SPDX-License-Identifier: Apache-2.0
 import { unpacked } from "./packed.js";
 
-// The value of run `index` in a column; one value stands for all runs.
+// Returns the value of run `index` in a column. A column of one value stands for all runs.
 const at = (column, index) => (column.length === 1 ? column[0] : column[index]) ?? null;
 
-// Of each run what it has.
+// Returns what each run has, as one object for each run.
 function rows(columns, count) {
   const out = Array.from({ length: count }, () => ({}));
   for (const [name, column] of Object.entries(columns))
@@ -16,7 +16,7 @@ function rows(columns, count) {
   return out;
 }
 
-// Instance by instance; the number 0 stands for 0 in all instances, here and in the result.
+// Divides instance by instance. The number 0 stands for 0 in all instances, here and in the result.
 function quotient(over, under) {
   if (over === 0 || under === 0) return 0;
   const size = Math.max(over.length, under.length);
@@ -33,7 +33,7 @@ function addQuotients(stats, quotients) {
 
 const turned = (columns) => (columns[0] ?? []).map((_, i) => columns.map((column) => column[i]));
 
-// Slices by their begin, those that others lie in first.
+// Returns slices ordered by their begin. A slice that others lie in comes before these.
 function slicesOf({ slices, kinds }) {
   const ends = {}, depths = kinds.map((name) => ({ warp: 0, stage: 1 })[name] ?? 2);
   const rows = turned(slices).map(([thread, kind, gap, length, ...rest]) => {
@@ -48,7 +48,7 @@ function sourceOf({ counts, ...rest }, listings) {
   return { ...rest, ...listings[rest.listing], counts: turned(counts).map((row) => row.flat()) };
 }
 
-// The page has each picture once, where it is seen without script.
+// Gives each run its pictures. The page has each picture once, where it is seen without script.
 function givePictures(runs) {
   for (const [, run, map, source] of document.getElementById("pictures").textContent.matchAll(/<img alt="" data-run="(\d+)" data-map="([^"]*)" src="([^"]*)">/g)) {
     const { [run]: owner } = runs;

@@ -1,7 +1,7 @@
-// Elements in one expression, and files that the page hands out.
+// Makes elements in one expression, and files that the page hands out.
 // SPDX-License-Identifier: Apache-2.0
 
-// h("p", {class: "lead"}, "text", element). Texts are never read as HTML.
+// Makes an element: h("p", {class: "lead"}, "text", element). Texts are never read as HTML.
 export function h(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -13,7 +13,7 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
-// A description, in which words between backquotes are code.
+// Returns a description, in which words between backquotes become code.
 export const prose = (text) => text.split("`").map((part, i) => (i % 2 ? h("code", {}, part) : part));
 
 export function download(name, type, text) {
@@ -22,7 +22,7 @@ export function download(name, type, text) {
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
-// RFC 4180.
+// Writes comma-separated values by RFC 4180.
 export function csv(columns, rows) {
   const cell = (value) => {
     const text = value === null || value === undefined ? "" : String(value);

@@ -1,4 +1,4 @@
-// The frame of a figure: title, how to read it, chart, its numbers as table and CSV, the drawing as SVG.
+// Builds the frame of a figure: title, how to read it, chart, its numbers as table and CSV, and the drawing as SVG.
 // SPDX-License-Identifier: Apache-2.0
 import { BarChart, CustomChart, LineChart, RadarChart, ScatterChart } from "echarts/charts";
 import { AxisPointerComponent, GridComponent, LegendComponent, RadarComponent, TitleComponent, TooltipComponent } from "echarts/components";
@@ -12,10 +12,11 @@ import { onSchemeChange, theme } from "./theme.js";
 
 echarts.use([BarChart, CustomChart, LineChart, RadarChart, ScatterChart, AxisPointerComponent, GridComponent, LegendComponent, RadarComponent, TitleComponent, TooltipComponent, LabelLayout, SVGRenderer]);
 
-const kMaxTableRows = 80; // longer ones are in the CSV only
+const kMaxTableRows = 80; // longer tables are in the CSV only
 const kExportWidth = 720;
 
-// chart: {option(theme, width), height(theme, width), columns, rows} of kinds/. `before` is an element between the note and the chart.
+// Builds a figure of `chart`, which one of kinds/ made: {option(theme, width), height(theme, width), columns, rows}. `before` is an element between
+// the note and the chart.
 export function figure({ id, title, note, wide, before }, chart) {
   const canvas = h("div", { class: "canvas", role: "img", "aria-label": title });
   const element = h("figure", { id, class: wide ? "wide" : null }, h("h3", {}, title), note ? h("p", { class: "note" }, note) : null, before, canvas, h("figcaption", {}, ...tools(id, chart)));
@@ -28,13 +29,13 @@ export function figure({ id, title, note, wide, before }, chart) {
     if (drawn) drawn.dispose();
     drawn = echarts.init(canvas, null, { renderer: "svg", width, height });
     drawn.setOption(chart.option(t, width));
-    canvas.querySelector("svg")?.setAttribute("viewBox", `0 0 ${width} ${height}`); // so that print can scale it
+    canvas.querySelector("svg")?.setAttribute("viewBox", `0 0 ${width} ${height}`); // Print can scale it then.
   };
   let last = 0;
   new ResizeObserver(() => {
     if (canvas.clientWidth === last) return;
     last = canvas.clientWidth;
-    requestAnimationFrame(() => draw()); // a chart changes the page's height, and so must not within the observer
+    requestAnimationFrame(() => draw()); // A chart changes the page's height, which must not happen within the observer.
   }).observe(canvas);
   onSchemeChange(() => draw());
   window.addEventListener("beforeprint", () => draw("light"));
@@ -42,7 +43,7 @@ export function figure({ id, title, note, wide, before }, chart) {
   return element;
 }
 
-// Those of a list of {info, make} that `data` has something for. `suffix` tells several of the same page apart.
+// Returns those figures of a list of {info, make} that `data` has something for. `suffix` tells several of the same page apart.
 export function figures(list, data, suffix = "") {
   const drawn = list.map(({ info, make }) => {
     const chart = make(data);
@@ -65,7 +66,7 @@ function dataTable(chart) {
   return h("table", {}, h("thead", {}, h("tr", {}, chart.columns.map((name, i) => h("th", { scope: "col", class: i ? "n" : null }, name)))), h("tbody", {}, chart.rows.map((row) => h("tr", {}, row.map(cell)))));
 }
 
-// Always in the light scheme: it is for papers.
+// Returns the drawing as SVG. It is always in the light scheme, because it is for papers.
 function svg(chart) {
   const t = theme("light"), height = Math.round(chart.height(t, kExportWidth));
   const drawing = echarts.init(null, null, { renderer: "svg", ssr: true, width: kExportWidth, height });

@@ -1,4 +1,4 @@
-// Numbers as people read them: narrow spaces between thousands, a true minus, units apart.
+// Writes numbers as people read them: narrow spaces between thousands, a true minus, units apart.
 // SPDX-License-Identifier: Apache-2.0
 
 const kThin = "\u202f";
@@ -7,7 +7,7 @@ function grouped(digits) {
   return digits.replace(/\B(?=(\d{3})+(?!\d))/g, kThin);
 }
 
-// Whole numbers whole, others with four significant digits.
+// Writes whole numbers in full, and others with four significant digits.
 export function number(value) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
@@ -22,7 +22,7 @@ export function percent(fraction, digits = 1) {
   return fraction === null || !Number.isFinite(fraction) ? "–" : `${(100 * fraction).toFixed(digits)}${kThin}%`;
 }
 
-// A change as a share of what was: +3.2 %, −12 %.
+// Writes a change as a share of what was: +3.2 %, −12 %.
 export function change(ratio) {
   if (ratio === null || !Number.isFinite(ratio)) return "–";
   const share = 100 * (ratio - 1);
@@ -34,7 +34,7 @@ export function change(ratio) {
 
 const kPrefixes = [[1e12, "T"], [1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""]];
 
-// 208 M, 3.42 G: three significant digits.
+// Writes three significant digits: 208 M, 3.42 G.
 export function short(value) {
   if (value === null || !Number.isFinite(value)) return "–";
   const [scale, prefix] = kPrefixes.find(([limit]) => Math.abs(value) >= limit) ?? [1, ""];
@@ -49,7 +49,7 @@ export function bytes(value) {
   return `${value}${kThin}B`;
 }
 
-// Seconds of the simulated machine or of the host.
+// Writes seconds of the simulated machine or of the host.
 export function duration(seconds) {
   if (seconds === null || !Number.isFinite(seconds)) return "–";
   for (const [scale, unit] of [[60, "min"], [1, "s"], [1e-3, "ms"], [1e-6, "µs"]])

@@ -1,4 +1,4 @@
-// The page: draws the document that `glint report` embedded and puts its sections in order.
+// Draws the document that `glint report` embedded in the page, and puts its sections in order.
 // SPDX-License-Identifier: Apache-2.0
 import { readDocument } from "./document.js";
 import { h } from "./dom.js";
@@ -35,13 +35,13 @@ import { stalls } from "./sections/stalls.js";
 import { suites } from "./sections/suites.js";
 import { kMaxColours } from "./theme.js";
 
-// Where a run is a colour, only so many runs as there are colours.
+// Where each run has a colour, only as many runs are shown as there are colours.
 function ofRuns({ info, make }, runs) {
   const shown = info.coloured ? runs.slice(0, kMaxColours) : runs;
   const note = [typeof info.note === "function" ? info.note(shown) : info.note, shown.length < runs.length ? `The first ${shown.length} runs.` : ""].join(" ");
   return { info: { ...info, note }, make: () => make(shown) };
 }
-// One a run that has a trace.
+// Draws one timeline for each run that has a trace.
 function timelines(runs) {
   const drawn = runs.map((run) => timeline(run, run.index)).filter(Boolean);
   return drawn.length ? h("div", { class: "figures" }, drawn.map(({ info, chart }) => figure(info, chart))) : null;
@@ -76,13 +76,13 @@ function draw(data) {
   const docs = { ...data.stat_docs, keys: data.key_docs };
   const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
   document.getElementById("figures").append(...sectionsOf(data, runs).filter(Boolean));
-  document.getElementById("all-keys")?.append(keys(runs, data.key_docs)); // a page of suites alone has no place for them
+  document.getElementById("all-keys")?.append(keys(runs, data.key_docs)); // A page of suites alone has no place for them.
   document.getElementById("all-metrics")?.append(metrics(runs, data.metric_docs));
   suites(data);
   document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));
   document.getElementById("footer").append(`Glint ${data.version}. `, ...runs.map((run) => h("p", {}, h("code", {}, run.data.run.command.join(" ")), ` · ${run.facts.git} · ${run.facts.compiler} · ${run.facts.started}`)));
-  document.documentElement.dataset.ready = "yes"; // for tests: all of the above has run
-  document.getElementById(location.hash.slice(1))?.scrollIntoView(); // what the address names was not there when the browser looked
+  document.documentElement.dataset.ready = "yes"; // Tests read this: all of the above has run.
+  document.getElementById(location.hash.slice(1))?.scrollIntoView(); // What the address names was not there when the browser looked.
 }
 
 readDocument().then(draw).catch(failed);

@@ -1,7 +1,7 @@
-// A run as the figures see it: sums over the instances of a unit, parts of breakdowns, metrics, keys.
+// Holds a run as the figures see it: sums over the instances of a unit, parts of breakdowns, metrics, keys.
 // SPDX-License-Identifier: Apache-2.0
 
-const kKeysInLabel = 2; // more are not read; more are shown only where fewer would not tell runs apart
+const kKeysInLabel = 2; // More keys are shown only where fewer would not tell runs apart.
 
 export class Run {
   constructor(data, index, docs) {
@@ -9,7 +9,7 @@ export class Run {
     this.index = index;
     this.docs = docs;
     this.facts = data.run;
-    this.label = ""; // set by labelRuns()
+    this.label = ""; // labelRuns() sets it.
     this.breakdowns = new Map(); // their keys by path, in order
     for (const key of Object.keys(data.stats)) {
       const end = key.indexOf("::");
@@ -20,7 +20,7 @@ export class Run {
     }
   }
 
-  // The values of a statistic, one an instance; [] where the run has none.
+  // Returns the values of a statistic, one for each instance, or [] where the run has none.
   values(path) {
     const found = this.data.stats[path];
     return found === undefined ? [] : Array.isArray(found) ? found : [found];
@@ -28,22 +28,22 @@ export class Run {
   has(path) {
     return path in this.data.stats;
   }
-  // Over all instances; null where the run has no such statistic.
+  // Returns the sum over all instances, or null where the run has no such statistic.
   sum(path) {
     const values = this.values(path);
     return values.length ? values.reduce((a, b) => a + b, 0) : null;
   }
-  // The parts of a breakdown by name, in order: {issued: 12, ...}.
+  // Returns the parts of a breakdown by name, in order: {issued: 12, ...}.
   parts(path) {
     const out = {};
     for (const key of this.breakdowns.get(path) ?? []) out[key.slice(path.length + 2)] = this.sum(key);
     return out;
   }
-  // The sum of the parts that `wanted` takes.
+  // Returns the sum of the parts that `wanted` takes.
   part(path, wanted) {
     return Object.entries(this.parts(path)).reduce((sum, [name, value]) => (wanted(name) ? sum + value : sum), 0);
   }
-  // Counts of a histogram over all instances.
+  // Returns the counts of a histogram over all instances.
   histogram(path) {
     const out = [];
     for (const bins of this.values(path)) if (Array.isArray(bins)) bins.forEach((count, i) => (out[i] = (out[i] ?? 0) + count));
@@ -65,7 +65,7 @@ export class Run {
   get seconds() {
     return this.cycles / (this.config("clock_mhz") * 1e6);
   }
-  // Warp instructions a cycle of the whole GPU, as the terminal shows it.
+  // Returns warp instructions per cycle of the whole GPU, as the terminal shows them.
   get ipc() {
     return ratio(this.sum("gpu.core[*].instructions"), this.cycles);
   }
@@ -85,10 +85,10 @@ export function ratio(a, b) {
   return a === null || b === null || !b ? null : a / b;
 }
 
-// Short names that tell the runs apart: of what differs between them, and no more than needed.
-//   label        of the run
-//   taskLabel    what ran: workload, size and samples
-//   configLabel  what it ran on: preset and changed keys; runs of one task have one each
+// Sets short names that tell the runs apart. They name what differs between the runs, and no more than needed.
+// - `label` is the name of the run.
+// - `taskLabel` says what ran: workload, size and samples.
+// - `configLabel` says what it ran on: preset and changed keys. No two runs of one task have the same.
 export function labelRuns(runs) {
   const differ = (of) => new Set(runs.map(of)).size > 1;
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.changes)))].filter((key) => differ((run) => run.config(key)));
@@ -111,7 +111,7 @@ export function labelRuns(runs) {
   return runs;
 }
 
-// As many of the keys as tell the same configurations apart as all of them do.
+// Returns how many of the keys tell the same configurations apart as all of them do.
 function fewestKeys(runs, keys) {
   const configs = (count) => new Set(runs.map((run) => [run.facts.config.name, ...keys.slice(0, count).map((key) => run.config(key))].join("\n"))).size;
   let count = Math.min(kKeysInLabel, keys.length);
@@ -119,7 +119,7 @@ function fewestKeys(runs, keys) {
   return count;
 }
 
-// Behind the name of the second and later runs that are alike by `of`: which it is of them.
+// Adds a number behind the name of the second and later runs that are alike by `of`.
 function numberRepeats(runs, name, of) {
   const met = {};
   const repeats = runs.map((run) => (met[of(run)] = (met[of(run)] ?? 0) + 1));

@@ -1,4 +1,4 @@
-// Unpacks what report/page/parts.h packed: base64 of a zlib stream of UTF-8, by the browser's own means (in all browsers since May 2023).
+// Unpacks what report/page/parts.h packed (base64 of a zlib stream of UTF-8) by the browser's own means, which all browsers have since May 2023.
 // SPDX-License-Identifier: Apache-2.0
 
 export async function unpacked(id) {
@@ -6,12 +6,12 @@ export async function unpacked(id) {
   for (let i = 0; i < letters.length; ++i) bytes[i] = letters.charCodeAt(i);
   const { readable, writable } = new DecompressionStream("deflate"), writer = writable.getWriter();
   const written = Promise.all([writer.write(bytes), writer.close()]);
-  const text = await new Response(readable).text(); // throws where the stream is damaged
+  const text = await new Response(readable).text(); // This throws where the stream is damaged.
   await written;
   return text;
 }
 
-// For the reader, who sees tables at most, and for the console.
+// Tells of a failure: to the reader, who sees tables at most, and on the console.
 export function failed(error) {
   const note = document.createElement("p");
   note.className = "note failed";

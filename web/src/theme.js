@@ -1,4 +1,4 @@
-// Colours: Okabe and Ito's eight, which stay apart for every kind of colour vision, and the inks of both schemes.
+// Holds the colours: Okabe and Ito's eight, which stay apart for every kind of colour vision, and the inks of both schemes.
 // SPDX-License-Identifier: Apache-2.0
 
 const kColours = { blue: "#0072B2", sky: "#56B4E9", green: "#009E73", orange: "#E69F00", red: "#D55E00", pink: "#CC79A7", yellow: "#F0E442", grey: "#8A929C", pale: "#D3D7DC", dark: "#454C55" };
@@ -9,7 +9,7 @@ const kSchemes = {
     colours: { ...kColours, blue: "#2E8FCB", sky: "#7CC7F2", green: "#1DB58A", red: "#E2722A", grey: "#868E98", pale: "#3C434C", dark: "#B4BBC4" },
   },
 };
-const kFont = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"; // single quotes: an exported SVG has it in an attribute, unescaped
+const kFont = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"; // An exported SVG has it in an attribute, unescaped, so its quotes are single.
 
 const kRunColours = ["blue", "orange", "green", "pink", "sky", "red", "yellow", "dark"];
 export const kMaxColours = kRunColours.length;
@@ -24,7 +24,7 @@ export function theme(scheme = currentScheme()) {
   return { ...inks, font: kFont, colour: (name) => colours[name] };
 }
 
-// Black or white, whichever reads better on `hex` (WCAG 2.1, relative luminance).
+// Returns black or white, whichever reads better on `hex` (WCAG 2.1, relative luminance).
 export function inkOn(hex) {
   const channel = (at) => {
     const c = parseInt(hex.slice(at, at + 2), 16) / 255;

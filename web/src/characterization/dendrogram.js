@@ -1,4 +1,4 @@
-// Figure: which workloads join at which distance (LumiBench, Figure 3).
+// Draws which workloads join at which distance (LumiBench, Figure 3).
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { base, textWidth, tip, valueAxis } from "../kinds/common.js";
@@ -11,7 +11,7 @@ export const info = {
   note: (data) => `${data.linkage[0].toUpperCase()}${data.linkage.slice(1)} linkage on Euclidean distance in the ${data.kept} components. The dashed line cuts the tree into ${data.clusters} clusters; filled circles are their representatives${data.reference.known ? `, open ones ${data.reference.name}` : ""}.`,
 };
 
-// Where every group lies: its row (between those of its two parts), its distance, its cluster or -1 where it joins several.
+// Returns where every group lies: its row (between those of its two parts), its distance, and its cluster, or -1 where it joins several.
 function places(data) {
   const n = data.workloads.length, out = [];
   data.leaves.forEach((row, i) => (out[row] = { at: i, distance: 0, cluster: data.workloads[row].cluster }));
@@ -35,7 +35,7 @@ export function make(data) {
         const colour = place[n + i].cluster < 0 ? t.muted : t.colour(clusterColour(place[n + i].cluster));
         return { type: "line", symbol: "none", triggerLineEvent: true, lineStyle: { color: colour, width: 1.6 }, emphasis: { lineStyle: { width: 3 } }, data: [[place[a].distance, place[a].at], [distance, place[a].at], [distance, place[b].at], [place[b].distance, place[b].at]] };
       }),
-      // A cluster of one has no join of its own colour: its branch up to the cut.
+      // A cluster of one has no join of its own colour, so its branch is drawn up to the cut.
       ...data.leaves.filter((row) => data.workloads.filter((one) => one.cluster === data.workloads[row].cluster).length === 1).map((row) => ({ type: "line", symbol: "none", silent: true, lineStyle: { color: t.colour(clusterColour(data.workloads[row].cluster)), width: 1.6 }, data: [[0, place[row].at], [cut, place[row].at]] })),
       { type: "line", symbol: "none", silent: true, lineStyle: { color: t.muted, width: 1, type: "dashed" }, data: [[cut, -0.8], [cut, n - 0.2]] },
       { type: "scatter", silent: true, symbolSize: 8, symbolOffset: [-7, 0], data: data.leaves.flatMap((row, i) => (data.workloads[row].chosen ? [{ value: [0, i], itemStyle: { color: t.colour(clusterColour(data.workloads[row].cluster)) } }] : [])) },

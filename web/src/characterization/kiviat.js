@@ -1,4 +1,4 @@
-// Figure: a Kiviat diagram a workload over the representative metrics (LumiBench, Figure 4).
+// Draws a Kiviat diagram for each workload over the representative metrics (LumiBench, Figure 4).
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { number } from "../format.js";
@@ -8,7 +8,7 @@ import { clusterColour } from "./shared.js";
 const kCell = 138, kRow = 150, kRadius = 44, kTitle = 20;
 const across = (width) => Math.max(1, Math.floor(width / kCell));
 
-// What the spokes are, with what their ends stand for.
+// Lists what the spokes are, and what their ends stand for.
 const spokes = (data) => h("ol", { class: "note spokes" }, data.axes.map((axis) => h("li", {}, h("code", {}, axis.name), ` ${number(axis.least)} to ${number(axis.most)} ${axis.unit}`)));
 
 export const info = {

@@ -1,4 +1,4 @@
-// Figures: what analytical models predict against what was simulated (LumiBench, Figure 15), and how far they are off.
+// Draws what analytical models predict against what was simulated (LumiBench, Figure 15), and how far they are off.
 // SPDX-License-Identifier: Apache-2.0
 import { number, percent, short } from "../format.js";
 import { bars } from "../kinds/bars.js";

@@ -1,4 +1,4 @@
-// Figures: the workloads in the plane of two components; near each other is alike.
+// Draws the workloads in the plane of two components. Workloads that are alike lie near each other.
 // SPDX-License-Identifier: Apache-2.0
 import { number, percent } from "../format.js";
 import { base, legend, tip, valueAxis } from "../kinds/common.js";
@@ -11,7 +11,7 @@ const middle = (values) => (Math.min(...values) + Math.max(...values)) / 2;
 function plane(data, x, y) {
   if (data.kept <= y) return null;
   const shaders = marks(data), share = (i) => percent(data.eigenvalues[i] / data.eigenvalues.reduce((a, b) => a + b, 0));
-  // A name stands where the plane has room for it.
+  // A name stands on the side where the plane has room for it.
   const side = (one) => (one.scores[x] > middle(data.workloads.map((each) => each.scores[x])) ? "left" : "right");
   const axis = (t, i) => ({ ...valueAxis(t, number), name: `PC${i + 1} · ${share(i)} of the variance`, scale: true, axisLine: { show: true, onZero: true, lineStyle: { color: t.line } } });
   const option = (t, width) => {

@@ -1,4 +1,4 @@
-// Figure: eigenvalues of the correlation matrix, and which of them are kept.
+// Draws the eigenvalues of the correlation matrix, and shows which of them are kept.
 // SPDX-License-Identifier: Apache-2.0
 import { number, percent } from "../format.js";
 import { base, categoryAxis, tip, valueAxis } from "../kinds/common.js";

@@ -1,13 +1,13 @@
-// What several figures of the characterisation need: a colour a cluster, a mark a shader set.
+// Holds what several figures of the characterisation need: a colour for each cluster, and a mark for each shader set.
 // SPDX-License-Identifier: Apache-2.0
 import { kMaxColours, runColour } from "../theme.js";
 
-// More clusters than colours are grey from there on: a colour that comes back would say what is not true.
+// When there are more clusters than colours, the further ones are grey. A colour used twice would say that two clusters are one.
 export const clusterColour = (cluster) => (cluster < kMaxColours ? runColour(cluster) : "grey");
 
 const kMarks = ["circle", "triangle", "rect", "diamond", "pin", "arrow"];
 
-// Name and mark of every shader set, in order of appearance.
+// Returns name and mark of every shader set, in order of appearance.
 export function marks(data) {
   const names = [...new Set(data.workloads.map((one) => one.shader))];
   return names.map((name, i) => ({ name, mark: kMarks[i % kMarks.length] }));

@@ -1,4 +1,4 @@
-// Figures: reads of the L1s by who asked (LumiBench, Figure 11), and of the L2.
+// Draws reads of the L1s by who asked (LumiBench, Figure 11), and reads of the L2.
 // SPDX-License-Identifier: Apache-2.0
 import { percent } from "../format.js";
 import { stacked } from "../kinds/stacked.js";

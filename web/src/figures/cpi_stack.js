@@ -1,11 +1,11 @@
-// Figure: what the cycles of all schedulers went into, for each instruction.
+// Draws what the cycles of all schedulers were spent on, for each instruction.
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { stacked } from "../kinds/stacked.js";
 import { runRows } from "./shared.js";
 
 const kSlots = "gpu.core[*].issue_slots";
-// Reasons of core/stall.h that belong together.
+// Groups the reasons of core/stall.h that belong together.
 export const kGroups = [
   { name: "issued", colour: "green", of: ["issued"] },
   { name: "pipe busy", colour: "blue", of: ["math_pipe_throttle", "register_banks", "lsu_throttle", "tex_throttle"] },

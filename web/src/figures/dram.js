@@ -1,4 +1,4 @@
-// Figures: use of the DRAM's data bus (LumiBench, Figure 12), and what its clocks went into.
+// Draws the use of the DRAM's data bus (LumiBench, Figure 12), and what its clocks were spent on.
 // SPDX-License-Identifier: Apache-2.0
 import { percent } from "../format.js";
 import { stacked } from "../kinds/stacked.js";

@@ -1,4 +1,4 @@
-// Figure: what the RT units read (LumiBench, Figure 13).
+// Draws what the RT units read (LumiBench, Figure 13).
 // SPDX-License-Identifier: Apache-2.0
 import { stacked } from "../kinds/stacked.js";
 import { runRows } from "./shared.js";

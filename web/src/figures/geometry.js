@@ -1,4 +1,4 @@
-// Figure: geometry and structures of scenes beside each other (LumiBench, Figure 7). Needs runs that differ in them.
+// Draws geometry and structures of scenes beside each other (LumiBench, Figure 7). It needs runs that differ in them.
 // SPDX-License-Identifier: Apache-2.0
 import { bytes, number, percent } from "../format.js";
 import { bars } from "../kinds/bars.js";

@@ -1,4 +1,4 @@
-// Figure: instructions by class, counted and weighed by their latency (LumiBench, Figure 8).
+// Draws instructions by class, counted and weighed by their latency (LumiBench, Figure 8).
 // SPDX-License-Identifier: Apache-2.0
 import { stacked } from "../kinds/stacked.js";
 import { kClasses, rowsOf } from "./shared.js";

@@ -1,4 +1,4 @@
-// Figure: instructions a cycle across configurations (LumiBench, Figure 14).
+// Draws instructions per cycle across configurations (LumiBench, Figure 14).
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { bars } from "../kinds/bars.js";

@@ -1,4 +1,4 @@
-// Figures: where the time of a miss goes, and how it is spread.
+// Draws where the time of a miss goes, and how it is spread.
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { histogram } from "../kinds/histogram.js";

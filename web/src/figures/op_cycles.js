@@ -1,4 +1,4 @@
-// Figure: the ops that schedulers waited at, run by run. Needs profiles; of a single run it stands beside the counts (ops.js).
+// Draws the ops that schedulers waited at, run by run. It needs profiles. For a single run, ops.js draws them beside the counts.
 // SPDX-License-Identifier: Apache-2.0
 import { opShares } from "./ops.js";
 

@@ -1,4 +1,4 @@
-// Figure: how long accesses and traces took, op by op. Needs a profile.
+// Draws how long accesses and traces took, op by op. It needs a profile.
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { bars } from "../kinds/bars.js";

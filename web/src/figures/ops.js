@@ -1,4 +1,4 @@
-// Figure: the ops that were issued most and, of a single run, those that schedulers waited at. Needs a profile.
+// Draws the ops that were issued most and, for a single run, those that schedulers waited at. It needs a profile.
 // SPDX-License-Identifier: Apache-2.0
 import { percent } from "../format.js";
 import { bars } from "../kinds/bars.js";
@@ -21,7 +21,8 @@ export function make(runs) {
   return profiled.length ? opShares(runs, profiled.length > 1 ? ["issues"] : ["issues", "cycles"]) : null;
 }
 
-// Bars of the ops with the largest shares: a colour a field of a single run, or a colour a run of the first field.
+// Returns bars of the ops with the largest shares. A single run has a colour for each field; several runs have a colour each, and show the first
+// field.
 export function opShares(runs, fields) {
   const profiled = runs.filter((run) => run.data.profile), one = profiled.length === 1;
   const ops = new Map(profiled.map((run) => [run, new Map(run.data.profile.ops.map((op) => [op.name, op]))]));

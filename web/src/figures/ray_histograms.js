@@ -1,4 +1,4 @@
-// Figures: how many nodes rays visit, and how long they take.
+// Draws how many nodes rays visit, and how long they take.
 // SPDX-License-Identifier: Apache-2.0
 import { histogram } from "../kinds/histogram.js";
 import { runColour } from "../theme.js";

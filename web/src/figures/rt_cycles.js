@@ -1,4 +1,4 @@
-// Figure: what the cycles of the RT units went into.
+// Draws what the cycles of the RT units were spent on.
 // SPDX-License-Identifier: Apache-2.0
 import { stacked } from "../kinds/stacked.js";
 import { runRows } from "./shared.js";

@@ -1,4 +1,4 @@
-// Figure: how full the RT unit and the warps were (LumiBench, Figure 9).
+// Draws how full the RT unit and the warps were (LumiBench, Figure 9).
 // SPDX-License-Identifier: Apache-2.0
 import { percent } from "../format.js";
 import { measures } from "./shared.js";

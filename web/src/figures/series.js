@@ -1,4 +1,4 @@
-// Figure: the run over time (LumiBench, Figure 6). Needs `--sample`.
+// Draws the run over time (LumiBench, Figure 6). It needs `--sample`.
 // SPDX-License-Identifier: Apache-2.0
 import { number, percent } from "../format.js";
 import { lines } from "../kinds/lines.js";

@@ -1,4 +1,4 @@
-// What several figures need: instruction classes, rows for runs, single values side by side.
+// Holds what several figures need: instruction classes, rows for runs, single values side by side.
 // SPDX-License-Identifier: Apache-2.0
 import { bars } from "../kinds/bars.js";
 import { runColour } from "../theme.js";
@@ -12,15 +12,15 @@ export const kClasses = [
   { key: "rt", name: "Ray tracing", colour: "red" },
 ];
 
-// One row a run; a single one needs no name.
+// Returns one row for each run. A single run needs no name.
 export const runRows = (runs) => (runs.length > 1 ? runs.map((run) => run.label) : [""]);
 
-// Rows of every run and kind: `kinds` are {name, ...}; gives [{label, run, kind}].
+// Returns rows of every run and kind as [{label, run, kind}]. `kinds` are {name, ...}.
 export function rowsOf(runs, kinds) {
   return kinds.flatMap((kind) => runs.map((run) => ({ run, kind, label: runs.length > 1 ? `${run.label}, ${kind.name}` : kind.name })));
 }
 
-// list: {name, value(run), colour}. Few runs are bars of their own colour beside each other; many are rows.
+// Draws a list of {name, value(run), colour}. Few runs become bars of their own colour beside each other; many become rows.
 export function measures(runs, list, options) {
   const known = list.filter((one) => runs.some((run) => one.value(run) !== null));
   if (!known.length) return null;

@@ -1,4 +1,4 @@
-// Figure: the cycles that schedulers spent in each shader stage, by reason. Needs a profile.
+// Draws the cycles that schedulers spent in each shader stage, by reason. It needs a profile.
 // SPDX-License-Identifier: Apache-2.0
 import { percent } from "../format.js";
 import { stacked } from "../kinds/stacked.js";

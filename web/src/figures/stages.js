@@ -1,4 +1,4 @@
-// Figure: the instructions of each shader stage and their latency, by class (LumiBench, Figure 8, stage by stage).
+// Draws the instructions of each shader stage and their latency, by class (LumiBench, Figure 8, stage by stage).
 // SPDX-License-Identifier: Apache-2.0
 import { panels } from "../kinds/panels.js";
 import { kClasses, rowsOf } from "./shared.js";

@@ -1,10 +1,10 @@
-// Figure: what the warps of one SM did in a window of cycles. Needs `--trace`.
+// Draws what the warps of one SM did in a window of cycles. It needs `--trace`.
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { gantt } from "../kinds/gantt.js";
 import { kGroups } from "./cpi_stack.js";
 
-const kFirstPlace = 1001; // thread of the RT unit's first place: report/files/trace_files.h
+const kFirstPlace = 1001; // thread of the RT unit's first slot: report/files/trace_files.h
 const kStages = [
   { name: "intersection", colour: "yellow" }, { name: "any_hit", colour: "orange" }, { name: "closest_hit", colour: "blue" }, { name: "miss", colour: "grey" },
   { name: "callable", colour: "pink" }, { name: "ray_generation", colour: "dark" }, { name: "compute", colour: "dark" },
@@ -13,7 +13,7 @@ const kRunning = { name: "running", colour: "green" };
 
 const trackName = (thread) => (thread >= kFirstPlace ? `RT place ${thread - kFirstPlace}` : `warp slot ${thread - 1}`);
 
-// Bars by what they are drawn as: states in the groups of the CPI stack, stages as strips, stays in the RT unit.
+// Groups the bars by how they are drawn: states in the groups of the CPI stack, stages as strips, stays in the RT unit.
 function groupsOf(data, tracks) {
   const groups = new Map();
   const add = (key, name, colour, bar) => {
@@ -31,7 +31,7 @@ function groupsOf(data, tracks) {
       add(`stage ${title}`, `stage ${title}`, colour, { ...bar, strip: true });
     } else if (kindName === "rays") {
       add("rays", "in the RT unit", "pink", { ...bar, apart: true, title: `${number(rays)} rays`, lines: [["nodes visited", nodes]] });
-      const inside = groups.get("in the RT unit"); // the warp's own wait has the same name and colour
+      const inside = groups.get("in the RT unit"); // The warp's own wait has the same name and colour.
       if (inside) inside.bars.push(...groups.get("rays").bars.splice(0));
     }
   }

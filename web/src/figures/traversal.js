@@ -1,4 +1,4 @@
-// Figure: nodes a ray, against the depth of its structure (LumiBench, Figure 10).
+// Draws the nodes per ray against the depth of its structure (LumiBench, Figure 10).
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { measures } from "./shared.js";

@@ -1,9 +1,10 @@
-// Horizontal bars of single values with the value at their end; several series side by side.
+// Draws horizontal bars of single values with the value at their end. Several series stand side by side.
 // SPDX-License-Identifier: Apache-2.0
 import { number } from "../format.js";
 import { base, categoryAxis, legend, textWidth, tip, valueAxis } from "./common.js";
 
-// rows: labels. series: {name, colour, values: one a row, null = none; labels: their texts, without it those of format}. max: the axis' end.
+// `rows` are labels. `series` are {name, colour, values: one for each row, null for none; labels: their texts, which `format` makes otherwise}. `max`
+// is the end of the axis.
 export function bars({ rows, series, unit, format = number, max, axis = format }) {
   const thick = series.length > 3 ? 10 : series.length > 1 ? 13 : 16;
   const text = (one, i) => one.labels?.[i] ?? format(one.values[i] ?? null);

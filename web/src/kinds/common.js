@@ -1,7 +1,7 @@
-// What all kinds of chart share: text, axes, legend, tooltip.
+// Holds what all kinds of chart share: text, axes, legend, tooltip.
 // SPDX-License-Identifier: Apache-2.0
 
-// About what a text takes, in pixels: good enough to keep room for labels before anything is drawn.
+// Returns about the width of a text in pixels. This is good enough to keep room for labels before anything is drawn.
 export const textWidth = (text, size = 12) => (String(text).length * 0.58 + (String(text).match(/[A-Z]/g)?.length ?? 0) * 0.12) * size;
 
 export function base(t) {
@@ -36,7 +36,7 @@ export function valueAxis(t, format, name) {
   };
 }
 
-// Labels that `width` has no room for are cut; where rows are high enough for `twoLines`, what stands behind the last comma goes below.
+// Labels that `width` has no room for are cut. With `twoLines`, where rows are high enough, what stands behind the last comma goes below.
 export function categoryAxis(t, labels, width, twoLines = false) {
   const formatter = (label) => (twoLines && textWidth(label) > width ? label.replace(/, ([^,]*)$/, ",\n$1") : label);
   return {
@@ -48,7 +48,7 @@ export function categoryAxis(t, labels, width, twoLines = false) {
   };
 }
 
-// A legend at the top left, and the height of its lines. Symbols of 10 px with 6 px to the text and 14 px between items.
+// Returns a legend at the top left, and the height of its lines. Symbols have 10 px, with 6 px to the text and 14 px between items.
 export function legend(t, names, width) {
   let lines = 1, used = 0;
   for (const name of names) {
@@ -79,7 +79,7 @@ export function legend(t, names, width) {
   };
 }
 
-// A line of a tooltip: mark, name, value on the right.
+// Returns a tooltip. Each of its lines has a mark, a name, and a value on the right.
 export function tip(title, lines) {
   const rows = lines.map(([colour, name, value]) => `<tr><td style="padding:1px 0">${colour ? `<span style="display:inline-block;width:9px;height:9px;background:${colour};margin-right:6px"></span>` : ""}${escape(name)}</td><td style="text-align:right;padding-left:16px">${value}</td></tr>`);
   return `<div style="font-weight:600;margin-bottom:3px">${escape(title)}</div><table style="border-collapse:collapse">${rows.join("")}</table>`;

@@ -1,12 +1,12 @@
-// Bars over time, a track a row: who did what and when.
+// Draws bars over time with a row for each track: who did what and when.
 // SPDX-License-Identifier: Apache-2.0
 import { number, short } from "../format.js";
 import { base, legend, textWidth, tip, valueAxis } from "./common.js";
 
 const kRow = 15, kStrip = 3, kGap = 2;
 
-// tracks: names, from the top. groups: {name, colour, bars: [{track, begin, length, title, lines: [[name, value]], strip, apart}]}: a
-// strip is a thin bar above the others of its track; bars that are `apart` have a gap between them.
+// `tracks` are names, from the top. `groups` are {name, colour, bars: [{track, begin, length, title, lines: [[name, value]], strip, apart}]}. A strip
+// is a thin bar above the others of its track; bars that are `apart` have a gap between them.
 export function gantt({ tracks, groups, begin, end, unit }) {
   const shown = groups.filter((group) => group.bars.length);
   const names = shown.map((group) => group.name);

@@ -1,13 +1,13 @@
-// How often each value came: bars for one series, stepped lines of shares for several.
+// Draws how often each value came: bars for one series, stepped lines of shares for several.
 // SPDX-License-Identifier: Apache-2.0
 import { number, percent, short } from "../format.js";
 import { base, legend, tip, valueAxis } from "./common.js";
 
-// series: {name, colour, counts}. bins: {low, step} of all of them. unit: of values; what: of counts.
+// `series` are {name, colour, counts}. `bins` is {low, high, step} of all of them. `unit` is the unit of values, and `what` that of counts.
 export function histogram({ series, bins, unit, what }) {
   const totals = series.map((one) => one.counts.reduce((a, b) => a + b, 0));
   const length = Math.max(...series.map((one) => one.counts.length));
-  const last = bins.low + bins.step * Math.ceil((bins.high - bins.low) / bins.step); // from here on, in the bin beyond
+  const last = bins.low + bins.step * Math.ceil((bins.high - bins.low) / bins.step); // From here on, values are in the bin beyond.
   const name = (i) => {
     const from = bins.low + i * bins.step;
     return from >= last ? `from ${number(from)}` : `${number(from)} to ${number(from + bins.step - 1)}`;

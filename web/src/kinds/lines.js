@@ -1,11 +1,11 @@
-// Values over time, one panel above the other along the same axis.
+// Draws values over time, one panel above the other along the same axis.
 // SPDX-License-Identifier: Apache-2.0
 import { number, short } from "../format.js";
 import { base, legend, tip, valueAxis } from "./common.js";
 
 const kPanel = 108, kGap = 30;
 
-// panels: {name, unit, format, series: [{name, colour, x, y}]}; every panel has the same series' names.
+// `panels` are {name, unit, format, series: [{name, colour, x, y}]}. The series of every panel have the same names.
 export function lines({ panels, unit }) {
   const names = panels[0].series.length > 1 ? panels[0].series.map((one) => one.name) : [];
   const end = Math.max(...panels[0].series.map((one) => one.x[one.x.length - 1] ?? 0));

@@ -1,4 +1,4 @@
-// Horizontal bars of parts in panels beside each other, for several measures of the same rows; below each other where it is narrow.
+// Draws horizontal bars of parts for several measures of the same rows, in panels beside each other, or below each other where it is narrow.
 // SPDX-License-Identifier: Apache-2.0
 import { percent, short } from "../format.js";
 import { inkOn } from "../theme.js";
@@ -9,8 +9,8 @@ const kBelow = 12;   // between panels below each other
 const kNarrow = 560; // pixels; two panels need more
 const kEnd = 46;     // room for the share at a bar's end
 
-// rows: labels. parts: {name, colour}. panels: {name, unit, values: [part][row], wholes: one a row}: a bar is as long
-// as its part of the whole.
+// `rows` are labels. `parts` are {name, colour}. `panels` are {name, unit, values: [part][row], wholes: one for each row}. A bar is as long as its
+// part of the whole.
 export function panels({ rows, parts, panels: list }) {
   const sum = (panel, i) => panel.values.reduce((all, values) => all + (values[i] ?? 0), 0);
   const share = (panel, value, i) => (panel.wholes[i] ? (value ?? 0) / panel.wholes[i] : 0);
@@ -28,7 +28,7 @@ export function panels({ rows, parts, panels: list }) {
     return list.map((_, k) => ({ left: left + k * (each + kGap), top: top + kTitle, width: each - kEnd, height: plot }));
   }
 
-  // The parts of a panel, and a bar of no length that says at the end what all of them are.
+  // Returns the parts of a panel, and a bar of no length whose end says what all of them are.
   function bars(t, panel, k, plot) {
     const common = { type: "bar", stack: `panel ${k}`, xAxisIndex: k, yAxisIndex: k, barWidth: kBar, emphasis: { disabled: true } };
     const isWide = (value, i) => (share(panel, value, i) / end) * plot.width > 44;

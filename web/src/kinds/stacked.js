@@ -1,4 +1,4 @@
-// Horizontal bars of parts that make up a whole: shares within a bar, amounts in the table.
+// Draws horizontal bars of parts that make up a whole: shares within a bar, amounts in the table.
 // SPDX-License-Identifier: Apache-2.0
 import { number, percent, short } from "../format.js";
 import { inkOn } from "../theme.js";
@@ -6,8 +6,8 @@ import { base, categoryAxis, legend, textWidth, tip, valueAxis } from "./common.
 
 const kRow = 34, kBar = 22;
 
-// rows: labels. parts: {name, colour, values: one a row}. whole: one a row; without it, the sum of the parts.
-// scale: what a whole bar is, one a row (2.3 cycles an instruction): bars are then as long as that, not all of 100 %.
+// `rows` are labels. `parts` are {name, colour, values: one for each row}. `whole` has one for each row; without it, a whole is the sum of the parts.
+// `scale` says for each row what a whole bar is (2.3 cycles per instruction). Bars are then as long as that, and not all of 100 %.
 export function stacked({ rows, parts, unit, whole, scale, scaleName, scaleFormat = number }) {
   const sums = whole ?? rows.map((_, i) => parts.reduce((sum, part) => sum + (part.values[i] ?? 0), 0));
   const shown = parts.filter((part) => part.values.some((value) => value > 0));

@@ -1,4 +1,4 @@
-// How near each resource came to what it can do at best ("speed of light").
+// Shows how near each resource came to what it can do at best ("speed of light").
 // SPDX-License-Identifier: Apache-2.0
 import { csv, download, h } from "../dom.js";
 import { percent } from "../format.js";
@@ -6,7 +6,7 @@ import { ratio } from "../model.js";
 import { runColour } from "../theme.js";
 
 const kSectorBytes = 32;
-const kMaxBars = 4; // runs; more are rows of a table
+const kMaxBars = 4; // with more runs, they are rows of a table
 
 function starts(run, tests, unit) {
   const cycles = run.sum("gpu.rt_unit[*].rt.unit_cycles");
@@ -41,7 +41,7 @@ function barsOf(runs, rows) {
   return h("div", { class: "bounds" }, rows.map((row) => h("div", { class: "bound" }, h("div", { class: "what" }, h("b", {}, row.name), h("small", {}, row.doc)), h("div", { class: "bars" }, runs.map((run, i) => bar(row.values[i], run))))));
 }
 
-// A row a run; the nearer to the limit, the darker.
+// Makes a row for each run. A cell is darker the nearer it is to the limit.
 function table(runs, rows) {
   const cell = (value) => h("td", { class: "n", "data-value": value, style: `background:color-mix(in srgb, var(--orange) ${Math.round(70 * Math.min(1, value ?? 0))}%, transparent)` }, percent(value));
   const head = h("tr", {}, h("th", { scope: "col" }, "Run"), rows.map((row) => h("th", { scope: "col", class: "n", title: row.doc }, row.name)));

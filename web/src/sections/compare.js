@@ -1,15 +1,15 @@
-// Several runs: which configuration is faster on the whole, and which metrics changed most.
+// Compares several runs: which configuration is faster on the whole, and which metrics changed most.
 // SPDX-License-Identifier: Apache-2.0
 import { csv, download, h } from "../dom.js";
 import { change, number } from "../format.js";
 import { geometricMean } from "../model.js";
 
 const kShown = 25; // rows before the rest is folded away
-const kWide = 2; // pairs: with more, paper has room for the changes only
-const kFewRuns = 4; // that may be held against the first without any work in common
-const kOfTheHost = "sim_rate"; // says nothing of the machine that is simulated
+const kWide = 2; // pairs; with more, paper has room for the changes only
+const kFewRuns = 4; // runs that may be compared with the first without any work in common
+const kOfTheHost = "sim_rate"; // It says nothing of the machine that is simulated.
 
-// Speed-up of each configuration over the first, over the workloads that both have.
+// Returns the speed-up of each configuration over the first, over the workloads that both have.
 export function means(runs) {
   const configs = [...new Set(runs.map((run) => run.configLabel))];
   if (configs.length < 2) return null;
@@ -28,7 +28,8 @@ export function means(runs) {
   );
 }
 
-// What each run is held against: the first run of its task; where no two have one, the first of all if they are few.
+// Returns what each run is compared with: the first run of its task. Where no two runs have a task in common and the runs are few, it is the first of
+// all.
 function pairsOf(runs) {
   const first = (run) => runs.find((one) => one.taskLabel === run.taskLabel);
   const pairs = runs.map((run) => [first(run), run]).filter(([base, run]) => base !== run);
@@ -40,7 +41,7 @@ function changeOf(base, run, name) {
   return was === null || is === null ? null : was === is ? 1 : is / was;
 }
 
-// Metrics by the largest change of any pair; null where there is nothing to compare.
+// Returns metrics ordered by the largest change of any pair, or null where there is nothing to compare.
 export function deltas(runs, docs) {
   const pairs = pairsOf(runs);
   if (!pairs.length) return null;

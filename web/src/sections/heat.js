@@ -1,10 +1,10 @@
-// Maps of what each pixel cost, with a slider between the picture and the map. Needs `--heat`.
+// Shows maps of what each pixel cost, with a slider between the picture and the map. It needs `--heat`.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { number, short } from "../format.js";
 
 const kViewerWidth = 512; // as in report.css
-const kFirst = "active_cycles"; // the map shown first: lanes of a warp end together, so "cycles" shows warps rather than pixels
+const kFirst = "active_cycles"; // map shown first: lanes of a warp end together, so "cycles" shows warps rather than pixels
 
 const title = (map) => map.name.replaceAll("_", " ").replace("l1 ", "L1 ");
 const unitOf = (map) => (map.unit === "fraction" ? "fraction" : `${map.unit}s a pixel`);
@@ -14,7 +14,7 @@ function legend(map, scale) {
   return h("div", { class: "heat-legend" }, h("div", { class: "ramp", style: `background:linear-gradient(to right,${scale.join(",")})` }), h("div", { class: "marks" }, marks), h("p", { class: "note" }, unitOf(map), map.max > map.top ? `; what lies above ${short(map.top)} has the last colour` : ""));
 }
 
-// The picture below, the map above it from the slider's place on.
+// Shows the picture below, and the map above it from the slider's place on.
 function viewer(run, maps) {
   const { width, height } = maps[0], factor = Math.floor(kViewerWidth / width);
   const size = factor ? `width:${factor * width}px` : `width:${kViewerWidth}px`;

@@ -1,4 +1,4 @@
-// Every key of the configuration, folded away.
+// Lists every key of the configuration, folded away.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { number } from "../format.js";

@@ -1,4 +1,4 @@
-// Every metric of every run.
+// Lists every metric of every run.
 // SPDX-License-Identifier: Apache-2.0
 import { h, prose } from "../dom.js";
 import { number } from "../format.js";

@@ -1,11 +1,11 @@
-// The head of the page: which run, its picture, its key numbers.
+// Makes the head of the page: which run, its picture, its key numbers.
 // SPDX-License-Identifier: Apache-2.0
 import { csv, download, h } from "../dom.js";
 import { bytes, duration, number, percent, short } from "../format.js";
 import { ratio } from "../model.js";
 import { runColour } from "../theme.js";
 
-// name, value, what it is, the statistic behind it. The value of a key number carries the exact one for machines.
+// Each entry is a name, a value, what it is, and the statistic behind it. The value of a key number carries the exact one for machines.
 const kNumbers = [
   { name: "Cycles", value: (run) => run.cycles, text: number, sub: (run) => `${duration(run.seconds)} at ${number(run.config("clock_mhz"))} MHz`, stat: "gpu.cycles" },
   { name: "IPC", value: (run) => run.ipc, text: (v) => v?.toFixed(2) ?? "–", sub: (run) => `${number(run.sum("gpu.core[*].instructions"))} warp instructions`, stat: "gpu.core[*].instructions / gpu.cycles" },
@@ -35,7 +35,7 @@ const numbersOf = (runs) => kNumbers.filter((one) => !one.rays || runs.some((run
 
 const kPictureWidth = 288; // as in report.css
 
-// Small pictures grow by whole factors, so that every pixel is a square.
+// Shows a small picture enlarged by a whole factor, so that every pixel is a square.
 function pictureOf(run) {
   if (!run.data.picture) return null;
   const factor = Math.floor(kPictureWidth / run.facts.width);
@@ -76,13 +76,13 @@ export function overview(runs) {
   return h("section", { id: "overview" }, runs.length === 1 ? single(runs[0]) : several(runs));
 }
 
-// The head of a page without runs. Its title is the document's.
+// Makes the head of a page without runs. Its title is the document's.
 export function overviewOfSuites(data) {
   const sources = [...new Set([...data.characterizations, ...data.models].map((one) => one.source))];
   return h("section", { id: "overview" }, h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, document.title.split(" – ")[0]), h("p", { class: "about" }, sources.join(", "))));
 }
 
-// Scene and structures: one column a run. Name, value, how it is written.
+// Lists facts of scene and structures, which have one column for each run. An entry is a name, a value, and how it is written.
 const kFacts = [
   ["Triangles", (run) => run.metric("triangles"), number],
   ["Procedural primitives", (run) => run.metric("procedurals"), number],

@@ -1,4 +1,4 @@
-// The source lines that schedulers spent most cycles at, and all of the source beside what became of it. Needs a profile.
+// Shows the source lines that schedulers spent most cycles at, and all of the source beside what became of it. It needs a profile.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { number, percent } from "../format.js";
@@ -12,7 +12,7 @@ function largestReason(run, line) {
   return waits.length ? waits.reduce((a, b) => (b[1] > a[1] ? b : a))[0] : "issued";
 }
 
-// `view`: where a line's place leads, or null.
+// `view` says where a line's place leads, or is null.
 function costliest(run, view) {
   const total = run.part("gpu.core[*].issue_slots", () => true);
   const most = run.data.profile.lines[0].cycles;

@@ -1,4 +1,4 @@
-// The three largest reasons why schedulers did not issue, in words, each with the keys that bear on it.
+// Says in words the three largest reasons why schedulers did not issue, each with the keys that bear on it.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { number, percent } from "../format.js";
@@ -6,7 +6,7 @@ import { runColour } from "../theme.js";
 
 const kSlots = "gpu.core[*].issue_slots";
 
-// Reason of core/stall.h: what it means, and keys of the configuration that change it.
+// Maps a reason of core/stall.h to what it means and to keys of the configuration that change it.
 export const kReasons = {
   math_pipe_throttle: ["Execution pipe busy", "Operands were ready, but the pipe was still taking an earlier instruction.", ["core.units.fp32.interval", "core.units.int.interval", "core.schedulers"]],
   register_banks: ["Register banks busy", "Operands were ready, but their banks of the register file were being read.", ["core.register_file.banks"]],
@@ -32,7 +32,7 @@ export const kReasons = {
   no_warp: ["No warp", "The scheduler had none left: the end of the launch, when others still work. A larger frame, or warps of more equal length, make it a smaller share.", ["core.warp_layout"]],
 };
 
-// What holds the RT unit up, where schedulers wait for it.
+// Says what holds the RT unit up, where schedulers wait for it.
 const kUnitReasons = {
   node_request: ["sending requests to the L1", ["rt.requests_per_cycle", "rt.coalescing"]],
   l1_refused: ["refused by the L1", ["memory.l1.ports", "memory.l1.mshr_merges"]],

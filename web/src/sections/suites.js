@@ -1,4 +1,4 @@
-// Characterisations and models of whole suites: figures in the sections that the page brings along with their tables.
+// Shows characterisations and models of whole suites. Their figures go into the sections that the page brings along with their tables.
 // SPDX-License-Identifier: Apache-2.0
 import * as dendrogram from "../characterization/dendrogram.js";
 import * as kiviat from "../characterization/kiviat.js";
@@ -25,7 +25,7 @@ function characterization(data, suffix) {
 
 const models = (data, suffix) => [figures([model.scatter, model.errors], data, suffix)];
 
-// `list` stands in the sections `id`, `id`-2, ... in this order. One that was not computed has only a line there.
+// The documents of `list` belong to the sections `id`, `id`-2, ... in this order. One that was not computed has only a line there.
 function fill(list, id, make) {
   (list ?? []).forEach((data, i) => {
     const suffix = i ? `-${i + 1}` : "";

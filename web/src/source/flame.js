@@ -1,13 +1,13 @@
-// Flame graph of a profile: stages, under them the calls that the compiler inlined, under them lines; widths are cycles.
+// Draws the flame graph of a profile: stages, under them the calls that the compiler inlined, under them lines. Widths are cycles.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { kGroups } from "../figures/cpi_stack.js";
 import { number, percent } from "../format.js";
 import { Cost } from "./program.js";
 
-const kLeast = 0.0015; // of the width: narrower frames cannot be seen
-const kNamed = 0.03; // narrower ones have no room for a name
-const kReached = 0.02; // narrower ones are no stops of the Tab key
+const kLeast = 0.0015; // share of the width: narrower frames cannot be seen
+const kNamed = 0.03; // Narrower frames have no room for a name.
+const kReached = 0.02; // Narrower frames are no stops of the Tab key.
 const base = (path) => path.split("/").pop();
 
 class Frame {
@@ -21,7 +21,7 @@ class Frame {
   }
 }
 
-// From the outermost: [function, place of its call or null].
+// Returns the calls of an instruction from the outermost: [function, place of its call or null].
 function callsOf({ scopes, isa }, files, index) {
   const out = [];
   for (let row = scopes[isa.scope[index] - 1]; row; row = scopes[row[1] - 1]) out.unshift([row[0], row[1] ? { path: files[row[2]].path, line: row[3] } : null]);
@@ -44,13 +44,13 @@ export function flameTree(source) {
   return root;
 }
 
-// The group of reasons with most of a frame's cycles.
+// Returns the group of reasons with most of a frame's cycles.
 function groupOf(cost, reasons) {
   const cycles = ({ of }) => of.reduce((sum, reason) => sum + (cost.slots[reasons.indexOf(reason)] ?? 0), 0);
   return kGroups.reduce((best, group) => (cycles(group) > cycles(best) ? group : best));
 }
 
-// `open(path, line)`: what a click on a line does. A click on any other frame makes it as wide as the graph; one on a frame above it goes back.
+// A click on a line calls `open(path, line)`. A click on any other frame makes it as wide as the graph. A click on a frame above it goes back.
 export function flameGraph(source, open) {
   const tree = flameTree(source), whole = tree.cost.cycles;
   const rows = h("div", { class: "flames" });

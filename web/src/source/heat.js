@@ -1,12 +1,12 @@
-// Measures of the source view: what stands beside a line, and how hot it is drawn.
+// Holds the measures of the source view: what stands beside a line, and how hot it is drawn.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { kGroups } from "../figures/cpi_stack.js";
 import { number, percent } from "../format.js";
 
-const kLanes = 32; // of a warp
+const kLanes = 32; // lanes of a warp
 
-// Waiting groups with their parts of a cost, "issued" left out: [{name, colour, cycles}].
+// Returns the groups of reasons with their parts of a cost, without "issued": [{name, colour, cycles}].
 export function waits(cost, reasons) {
   return kGroups
     .filter((group) => group.name !== "issued")
@@ -15,7 +15,7 @@ export function waits(cost, reasons) {
 }
 const waiting = (cost, reasons) => waits(cost, reasons).reduce((sum, part) => sum + part.cycles, 0);
 
-// value: what is compared and drawn as a bar; text: what is read. `whole`: cycles of all schedulers of the run.
+// `value` is compared and drawn as a bar, and `text` is read. `whole` is the cycles of all schedulers of the run.
 export const kMeasures = [
   { id: "cycles", name: "Cycles", value: (cost) => cost.cycles, text: (cost, { whole }) => percent(cost.cycles / whole, 2), note: "shares of all scheduler cycles of the run" },
   { id: "stalls", name: "Stall cycles by reason", value: (cost, { reasons }) => waiting(cost, reasons), text: (cost, { reasons, whole }) => percent(waiting(cost, reasons) / whole, 2), note: "cycles in which nothing issued, as shares of all scheduler cycles" },
@@ -27,7 +27,7 @@ export const kMeasures = [
 
 const bar = (share, colour) => h("i", { style: `width:${(100 * share).toFixed(2)}%;background:var(--${colour})` });
 
-// What stands in the column of a line. `most`: the largest value of the pane.
+// Fills the column of a line. `most` is the largest value of the pane.
 export function fill(cell, cost, measure, most, context) {
   cell.replaceChildren();
   if (!cost) return;
@@ -39,13 +39,13 @@ export function fill(cell, cost, measure, most, context) {
   cell.title = parts.map((part) => `${part.name} ${percent(part.cycles / value)}`).join(", ");
 }
 
-// "long_scoreboard 62 %, issued 20 %": the largest parts of a cost.
+// Names the largest parts of a cost: "long_scoreboard 62 %, issued 20 %".
 export function mostly(cost, reasons) {
   const all = [...cost.slots].map((cycles, i) => [reasons[i], cycles]).filter(([, cycles]) => cycles > 0);
   return all.sort((a, b) => b[1] - a[1]).slice(0, 3).map(([name, cycles]) => `${name} ${percent(cycles / cost.cycles)}`).join(", ");
 }
 
-// The colours of "stalls".
+// Shows the colours of "stalls".
 export function legend() {
   return kGroups.filter(({ name }) => name !== "issued" && name !== "no warp").map(({ name, colour }) => h("span", {}, h("i", { style: `background:var(--${colour})` }), name));
 }

@@ -1,14 +1,14 @@
-// One pane of the source view: lines with their cost, of which one is chosen and some are marked.
+// Shows one pane of the source view: lines with their cost, of which one is chosen and some are marked.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { fill } from "./heat.js";
 
 const kPage = 20; // lines of Page Up and Page Down
 
-let panes = 0; // so far: names of lines are unique in a page with several views
+let panes = 0; // number of panes so far: names of lines are unique in a page with several views
 
 export class Pane {
-  // `act`: {choose(kind, key), point(kind, key or null), leave(kind, step)}.
+  // `act` is {choose(kind, key), point(kind, key or null), leave(kind, step)}.
   constructor(kind, title, act) {
     this.kind = kind;
     this.name = `pane-${panes++}`;
@@ -26,7 +26,7 @@ export class Pane {
     this.element = h("div", { class: `pane ${kind}` }, h("div", { class: "head" }, this.heading, this.note), this.list);
   }
 
-  // lines: {key, number, text, title}.
+  // Shows lines, which are {key, number, text, title}.
   show(lines) {
     this.byKey = new Map();
     this.lines = lines.map(({ key, number, text, title }, i) => {
@@ -39,14 +39,14 @@ export class Pane {
     this.list.scrollTop = 0;
   }
 
-  // costs: by key.
+  // Shows the costs of the lines. `costs` maps keys to costs.
   heat(costs, measure, context) {
     const values = this.lines.map(({ key }) => (costs.has(key) ? measure.value(costs.get(key), context) : 0));
     const most = measure.most ? measure.most() : values.reduce((a, b) => Math.max(a, b), 0);
     for (const { key, cell } of this.lines) fill(cell, costs.get(key), measure, most, context);
   }
 
-  // Marks `keys`; `chosen` is the one that the user is at, if it is in this pane.
+  // Marks `keys`. `chosen` is the line that the user is at, if it is in this pane.
   mark(keys, chosen) {
     for (const { key, row } of this.lines) {
       row.classList.toggle("on", keys.has(key));

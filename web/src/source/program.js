@@ -1,4 +1,4 @@
-// What the source view draws of a run: its programs, what each line cost, and which lines belong together.
+// Holds what the source view draws of a run: its programs, what each line cost, and which lines belong together.
 // SPDX-License-Identifier: Apache-2.0
 
 const kCounts = ["issues", "lanes", "sectors", "accesses", "ended", "latency"]; // behind program and index, then pairs of reasons
@@ -24,7 +24,7 @@ export class Cost {
   }
 }
 
-// Keys of lines: of GLSL "file:line", of SPIR-V its number, of ISA its index.
+// Holds a program. The key of a line is "file:line" in GLSL, its number in SPIR-V, and its index in ISA.
 export class Program {
   constructor(source, number) {
     Object.assign(this, source.programs[number], { number, files: source.files });
@@ -32,7 +32,7 @@ export class Program {
     this.costs = { glsl: new Map(), spirv: new Map(), isa: new Map() };
     for (const row of source.counts) if (row[0] === number) this.charge(row[1], Cost.of(row, this.reasons));
     this.total = this.sum("isa");
-    this.parts = { glsl: new Map(), spirv: new Map() }; // to indices of ISA
+    this.parts = { glsl: new Map(), spirv: new Map() }; // indices of ISA, by key
     this.isa.text.forEach((_, index) => {
       for (const kind of ["glsl", "spirv"]) {
         const key = this.keyOf(kind, index);
@@ -41,7 +41,7 @@ export class Program {
     });
   }
 
-  // Where instruction `index` comes from; null where that is unknown.
+  // Returns where instruction `index` comes from, or null where that is unknown.
   keyOf(kind, index) {
     if (kind === "isa") return index;
     const { file, line, spirv } = this.isa;
@@ -54,14 +54,14 @@ export class Program {
       this.costs[kind].set(key, (this.costs[kind].get(key) ?? new Cost(this.reasons)).add(cost));
     }
   }
-  // Of all lines of a pane, and of what has no line there (key null).
+  // Returns the sum over all lines of a pane, and what has no line there (key null).
   sum(kind, wanted = () => true) {
     const out = new Cost(this.reasons);
     for (const [key, cost] of this.costs[kind]) if (wanted(key)) out.add(cost);
     return out;
   }
 
-  // The keys in all three panes that belong to `key` in the pane `kind`.
+  // Returns the keys in all three panes that belong to `key` in the pane `kind`.
   partners(kind, key) {
     const isa = kind === "isa" ? [key] : (this.parts[kind].get(key) ?? []);
     const glsl = new Set(kind === "glsl" ? [key] : isa.map((index) => this.keyOf("glsl", index)));
@@ -77,7 +77,7 @@ export class Program {
     return { glsl, spirv, isa: new Set(isa) };
   }
 
-  // Files with lines of this program by their cycles, the costliest first: [number, cycles].
+  // Returns the files with lines of this program as [number, cycles], the costliest first.
   filesByCycles() {
     const cycles = new Map();
     for (const key of this.parts.glsl.keys()) cycles.set(Number(key.split(":")[0]), 0);

@@ -1,4 +1,4 @@
-// The source view: GLSL, SPIR-V and ISA of a program side by side; a line chosen in one marks its partners in the others.
+// Shows GLSL, SPIR-V and ISA of a program side by side. A line chosen in one marks its partners in the others.
 // SPDX-License-Identifier: Apache-2.0
 import { h } from "../dom.js";
 import { number, percent } from "../format.js";
@@ -80,7 +80,7 @@ class View {
     this.say(this.chosen);
   }
 
-  // Without a choice: the costliest line of the file in the middle.
+  // Chooses the costliest line of the file, when no line is chosen.
   showHottest() {
     if (this.chosen) return this.mark(this.chosen);
     let hottest = null;
@@ -126,7 +126,7 @@ class View {
     this.said.replaceChildren(h("b", {}, where), ` · ${partners.spirv.size} SPIR-V, ${partners.isa.size} ISA · ${what}`);
   }
 
-  // A place from outside: the program that spent most there.
+  // Opens a place from outside, in the program that spent most there.
   open(path, line) {
     const file = this.source.files.findIndex((one) => one.path === path);
     const cycles = (program) => program.costs.glsl.get(`${file}:${line}`)?.cycles ?? 0;
@@ -138,15 +138,15 @@ class View {
   }
 }
 
-// A place in the page where the view appears once the page has it; `open(file, line)` leads there then.
+// Returns a place in the page where the view appears once the page has it. `open(file, line)` then leads there.
 export function sourceView(source) {
   const place = h("div", { class: "view-place" });
   let view = null;
   setTimeout(() => {
     view = new View(source);
     place.append(view.element, flameGraph(source, (file, line) => view.open(file, line)));
-    view.showProgram(); // in the page, so that panes have a height to scroll in
-    document.documentElement.dataset.source = "yes"; // for tests: all of the above has run
+    view.showProgram(); // The view is in the page now, so panes have a height to scroll in.
+    document.documentElement.dataset.source = "yes"; // Tests read this: all of the above has run.
   });
   return { element: place, open: (file, line) => view?.open(file, line) };
 }
