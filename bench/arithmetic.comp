@@ -1,4 +1,4 @@
-// Arithmetic alone: a recurrence of floats beside one of integers, no memory but one store at the end.
+// Calculates and does little else: a recurrence of floats beside one of integers, with one store at the end.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 layout(local_size_x = 128) in;

@@ -1,5 +1,5 @@
-// How long the handler of every value op takes for a warp, on every SIMD path of this machine, the slowest
-// first.
+// Measures how long the handler of every value op takes for a warp, on every SIMD path of this machine, and
+// prints the slowest first.
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,11 +16,11 @@ using namespace glint::isa;
 
 namespace {
 
-constexpr double kLimit = 25.0;  // ns a warp on the widest path: the aim for every op that is not exempt
-constexpr int kRows = 64;        // of each bank
+constexpr double kLimit = 25.0;  // ns per warp on the widest path: the aim for every op that is not exempt
+constexpr int kRows = 64;        // rows of each bank
 
-// Operands of moderate size and some extremes: handlers without branches do not care, the others should show
-// it.
+// Holds operands of moderate size and some extremes. Handlers without branches take as long for either; the
+// others should show it.
 class Registers {
  public:
   Registers() {
@@ -35,7 +35,7 @@ class Registers {
     warp.predicate.fill(0x5a5a'5a5a);
     warp.exec = kAllLanes;
   }
-  // Ops whose lanes read each other take all of them: their last source is the mask.
+  // Lets ops whose lanes read each other take all lanes. Their last source is the mask.
   void fill_members(const OpRow& row, const Inst& inst) {
     if (row.unit != Unit::Shuffle || row.operands.count < 3) return;
     int slots = 0;
@@ -51,11 +51,11 @@ class Registers {
   std::vector<Lanes> lanes_ = std::vector<Lanes>(3 * kRows);
 };
 
-// Destinations lie apart from the sources, which stay as they are.
+// Returns an instruction whose destinations lie apart from its sources, so that the sources stay as they are.
 Inst inst_of(const OpRow& row) {
   Inst inst;
   int slot = 0;
-  // The slots are not 4 KiB apart, because loads behind stores at the same offset wait.
+  // The slots are not 4 KiB apart, because loads wait for earlier stores at the same offset.
   Slot source = 0, destination = 44, predicate = 0;
   for (const OperandKind kind : row.operands.view())
     for (const int end = slot + slots_of(kind); slot < end; ++slot) {
@@ -67,7 +67,7 @@ Inst inst_of(const OpRow& row) {
   return inst;
 }
 
-// The best of several runs: what others do on the machine only adds.
+// Returns the best time of several runs, because other work on the machine only adds to it.
 double nanoseconds(const OpRow& row, Registers& registers) {
   const Inst inst = inst_of(row);
   registers.fill_members(row, inst);
@@ -93,7 +93,7 @@ bool is_exempt(const OpRow& row) {
 
 struct Measured {
   size_t op;
-  std::vector<double> ns;  // one a path
+  std::vector<double> ns;  // one for each path
 };
 
 struct Options {
@@ -119,7 +119,7 @@ std::vector<Measured> measure(const Options& options) {
     for (const Path path : paths()) m.ns.push_back(nanoseconds(op_table(path)[op], registers));
     out.push_back(m);
   }
-  // Processors run slower for seconds at a time: what looks slow is measured again, after all others.
+  // Processors run slower for seconds at a time. So what looks slow is measured again, after all others.
   for (int again = 0; again < 3; ++again)
     for (Measured& m : out)
       if (m.ns.back() > kLimit)
