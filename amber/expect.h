@@ -1,4 +1,4 @@
-// Checks EXPECT: what a buffer must hold.
+// Checks EXPECT, which says what a buffer must hold.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>

@@ -13,7 +13,8 @@ namespace glint::amber {
 
 struct LaunchOptions {
   pipeline::GpuParams gpu;
-  // True: the timing machine; false: the functional machine, where every effect is immediate.
+  // True stands for the timing machine, and false for the functional machine, where every effect is
+  // immediate.
   bool timing = false;
   bool no_skip = false;  // for the timing machine
   uint32_t threads = 1;  // threads of the host, for the timing machine

@@ -44,24 +44,24 @@ std::string at_line(const std::string& text, int first_line);
 // Returns one number and whether it is in percent.
 std::pair<double, bool> parse_tolerance(Parsing& p);
 
-// parse_shader.cpp
+// These are in parse_shader.cpp.
 void parse_shader(Parsing& p);
 void parse_virtual_file(Parsing& p);
 void parse_device(Parsing& p, const std::string& command);
-// parse_buffer.cpp
+// These are in parse_buffer.cpp.
 void parse_struct(Parsing& p);
 void parse_buffer(Parsing& p, bool is_image);
 void parse_sampler(Parsing& p);
-// parse_structure.cpp
+// This is in parse_structure.cpp.
 void parse_structure(Parsing& p);
-// parse_pipeline.cpp
+// This is in parse_pipeline.cpp.
 void parse_pipeline(Parsing& p);
 void parse_derived_pipeline(Parsing& p);
-// parse_sections.cpp reads the older language, whose scripts have sections such as [compute shader] and
-// [test].
+// These are in parse_sections.cpp, which reads the older language. Its scripts have sections such as [compute
+// shader] and [test].
 bool has_sections(const std::string& text);
 void parse_sections(Script& script, const std::string& text);
-// parse_command.cpp: parse_command() returns false when `name` is none of its commands.
+// These are in parse_command.cpp. parse_command() returns false when `name` is none of its commands.
 bool parse_command(Parsing& p, const std::string& name, std::vector<Command>& to);
 
 }  // namespace glint::amber

@@ -204,7 +204,7 @@ bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipel
   else if (name == "SHADER_BINDING_TABLE")
     parse_table(p, pipeline);
   else if (name == "MAX_RAY_PAYLOAD_SIZE" || name == "MAX_RAY_HIT_ATTRIBUTE_SIZE")
-    p.tokens.number("the size");  // ignored: the sizes in the shaders count
+    p.tokens.number("the size");  // ignored, because the sizes in the shaders count
   else if (name == "MAX_RAY_RECURSION_DEPTH")
     pipeline.max_trace_depth = uint32_t(p.tokens.integer("the depth", 0, 31));
   else if (name == "FLAGS") {

@@ -53,7 +53,7 @@ uint32_t flag_named(Parsing& p, const std::string& name) {
   if (name == "FORCE_OPAQUE") return rt::instance_flag::kForceOpaque;
   if (name == "FORCE_NO_OPAQUE") return rt::instance_flag::kForceNoOpaque;
   if (name == "FORCE_OPACITY_MICROMAP_2_STATE" || name == "DISABLE_OPACITY_MICROMAPS")
-    return 0;  // scripts have no micromaps
+    return 0;  // Scripts have no micromaps.
   if (!parse_integer(name, number) || number < 0 || number > 0xf)
     p.wrong(fmt::format("there is no instance flag '{}'", name));
   return uint32_t(number);

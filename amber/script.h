@@ -20,7 +20,7 @@
 
 namespace glint::amber {
 
-// Limit for a buffer in bytes; a larger size is a mistake.
+// This is the limit for a buffer in bytes; a larger size is a mistake.
 inline constexpr uint64_t kMostBytes = uint64_t{1} << 31;
 
 enum class Language : uint8_t { Glsl, SpirvText, SpirvHex, SpirvBinary };
@@ -56,7 +56,7 @@ struct BottomLevel {
   std::vector<Geometry> geometries;
 };
 struct TopLevel {
-  // Each instance with the name of its bottom level.
+  // Holds each instance with the name of its bottom level.
   std::vector<std::pair<std::string, rt::Instance>> instances;
 };
 
@@ -91,7 +91,7 @@ struct Binding {
 struct Pipeline {
   std::string name;
   bool is_ray_tracing = false;
-  bool is_robust = false;           // accesses outside of buffers and images are not faults
+  bool is_robust = false;           // Accesses outside of buffers and images are not faults.
   std::vector<Attachment> shaders;  // a compute pipeline has one
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   std::map<std::string, std::vector<std::string>> tables;  // names of groups, by name of the table

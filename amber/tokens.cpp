@@ -23,7 +23,7 @@ Token Tokens::next() {
     if (at_ >= text_.size()) return {Token::Kind::EndOfText, "", line_};
     if (text_[at_] == '#')
       at_ = std::min(text_.find('\n', at_), text_.size());
-    else if (text_[at_] == '\\') {  // skips up to and including the line end
+    else if (text_[at_] == '\\') {  // This skips up to and including the line end.
       at_ = std::min(text_.find('\n', at_), text_.size());
       if (at_ < text_.size()) ++at_, ++line_;
     } else
