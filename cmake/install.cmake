@@ -1,4 +1,4 @@
-# What `cmake --install` and CPack leave behind: the command with its presets, shaders, manual pages and completions;
+# Says what `cmake --install` and CPack leave behind: the command with its presets, shaders, manual pages and completions;
 # the headers, the libraries and find_package(glint); the Python package (in the main file).
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)

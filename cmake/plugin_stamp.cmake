@@ -1,4 +1,4 @@
-# cmake -DROOT=folder -DLIST=file -DVERSION=number -DOUTPUT=file -P plugin_stamp.cmake
+# usage: cmake -DROOT=folder -DLIST=file -DVERSION=number -DOUTPUT=file -P plugin_stamp.cmake
 #
 # Writes a source that defines glint_plugin_stamp (base/plugin_stamp.h): the version and a hash of the headers that
 # LIST names. The file changes only when a header does.

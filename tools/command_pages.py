@@ -10,7 +10,7 @@ from help_text import Entry, Help
 
 
 def roff(text: str) -> str:
-    """Text for a line of a manual page: a leading dot or quote would begin a request."""
+    """Returns text for a line of a manual page, where a leading dot or quote would begin a request."""
     text = text.replace("\\", "\\e").replace("-", "\\-")
     return "\\&" + text if text[:1] in (".", "'") else text
 
@@ -27,7 +27,7 @@ def manual(name: str, page: Help, others: list[str]) -> str:
 
 
 def choices(entry: Entry) -> list[str]:
-    """The words of which an option takes one: "{timing,functional}"."""
+    """Returns the words of which an option takes one, as in "{timing,functional}"."""
     found = re.search(r"\{([^}]*)\}", entry.takes)
     return found[1].split(",") if found else []
 

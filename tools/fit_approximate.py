@@ -148,7 +148,7 @@ LOOSE = -5  # the octaves up to this one have less than four samples per segment
 
 
 def nearest_to_tanh(x, low, high, first, width, steps):
-    """Returns, of the triples that meet the few samples, the one whose worst distance from tanh is least."""
+    """Returns the triple that meets the few samples and has the least worst distance from tanh."""
     step1, step2, grid = steps
     t = np.linspace(0, 1, 65)
     truth = np.tanh(first + t * width) * ONE

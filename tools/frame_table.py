@@ -13,7 +13,7 @@ WORKLOADS = ["WKND_PT", "SHIP_SH"]
 
 
 def measure(glint, workload: str, folder: pathlib.Path, *options: str) -> list[str]:
-    """Hashes of the statistics (paths and values) and of image.png."""
+    """Returns hashes of the statistics (paths and values) and of image.png."""
     subprocess.run([glint, "run", workload, "--config", "mobile", "--size", "64x64", "--spp", "1", *options, "--out", folder], capture_output=True, text=True, check=True)
     values = [f"{row['path']},{row['value']}\n" for row in csv.DictReader((folder / "stats.csv").read_text().splitlines())]
     return [hashlib.sha256(data).hexdigest()[:16] for data in ("".join(values).encode(), (folder / "image.png").read_bytes())]

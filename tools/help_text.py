@@ -56,6 +56,6 @@ def read(glint: str, *words: str) -> Help:
 
 
 def read_all(glint: str) -> dict[str, Help]:
-    """The help of the program (key "") and of each command, in the program's order."""
+    """Returns the help of the program (key "") and of each command, in the program's order."""
     top = read(glint)
     return {"": top} | {command.written: read(glint, command.written) for command in top.commands}

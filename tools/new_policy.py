@@ -18,7 +18,7 @@ def fail(message: str, note: str = "") -> None:
 
 
 def registrations() -> dict[str, dict[str, pathlib.Path]]:
-    """Interface -> name of a policy -> its file."""
+    """Returns a map from interfaces to names of policies to their files."""
     found: dict[str, dict[str, pathlib.Path]] = {}
     for path in sorted(ROOT.glob("*/*/*.cpp")):
         text = path.read_text()
@@ -41,7 +41,7 @@ def class_name(name: str) -> str:
 
 
 def begin(source: pathlib.Path, old: str, new: str) -> str:
-    """The text of a policy under a new name, with a first line that says what is left to do."""
+    """Returns the text of a policy under a new name, with a first line that says what is left to do."""
     text = source.read_text()
     old_class = re.search(r"const Register<\w+, (\w+)> ", text)[1]
     first, rest = text.split("\n// SPDX", 1)

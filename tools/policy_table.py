@@ -11,24 +11,24 @@ import tempfile
 PATH = "tests/cli/policies.csv"
 # One core with a small L1, so that a few warps compete for all of its parts.
 FRAME = ["WKND_PT", "--config", "mobile", "--size", "24x16", "--spp", "1", "--set", "cores=1", "--set", "memory.l1.size=4096"]
-# Keys that stand for several, and what else a key needs to have an effect.
+# Lists keys that stand for several, and what else a key needs to have an effect.
 KEYS = {"*.replacement": "memory.l1.replacement"}
 NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"]}
 
 
 def listed(glint) -> list[list[str]]:
-    """Folder, key, name and doc of every policy, as `glint list policies` prints them."""
+    """Returns folder, key, name and doc of every policy, as `glint list policies` prints them."""
     lines = subprocess.run([glint, "list", "policies"], capture_output=True, text=True, check=True).stdout.splitlines()
     return [re.split(r" {2,}", line.strip(), maxsplit=3) for line in lines]
 
 
 def policies(glint) -> list[tuple[str, str]]:
-    """Key and name of every policy that a configuration can choose."""
+    """Returns key and name of every policy that a configuration can choose."""
     return [(KEYS.get(key, key), name) for _, key, name, _ in listed(glint) if not key.startswith("(")]
 
 
 def measure(glint, key: str, name: str, folder: pathlib.Path) -> tuple[int, str]:
-    """Cycles of the frame with the policy, and a hash of its picture."""
+    """Returns the cycles of the frame with the policy, and a hash of its picture."""
     settings = [f"--set={setting}" for setting in [*NEEDS.get(key, []), f"{key}={name}"]]
     subprocess.run([glint, "run", *FRAME, *settings, "--out", folder], capture_output=True, text=True, check=True)
     cycles = next(row["value"] for row in csv.DictReader((folder / "stats.csv").read_text().splitlines()) if row["path"] == "gpu.cycles")

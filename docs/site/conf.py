@@ -1,6 +1,6 @@
-# The documentation site: Sphinx with MyST and the theme furo; docs/build runs it on a copy of docs/.
+# Configures the documentation site: Sphinx with MyST and the theme furo. docs/build runs it on a copy of docs/.
 # SPDX-License-Identifier: Apache-2.0
-"""Read by Sphinx. Nothing here is fetched from a network."""
+"""Sphinx reads this file. Nothing here is fetched from a network."""
 import pathlib
 import re
 
@@ -38,7 +38,7 @@ html_theme_options = {
 
 
 def _outside(app, docname, source):
-    """Links that leave docs/ become the path as code: the site holds no copy of the sources."""
+    """Turns links that leave docs/ into the path as code, because the site holds no copy of the sources."""
     folder = pathlib.PurePosixPath(docname).parent
 
     def shown(match):
@@ -51,7 +51,7 @@ def _outside(app, docname, source):
 
 
 def _from_disk(app, error):
-    """Pages work from disk, light and dark, also with Debian's package of the theme."""
+    """Makes pages work from disk, light and dark, also with Debian's package of the theme."""
     if not error:
         mend_theme.mend(pathlib.Path(app.outdir) / "_static")
 

@@ -1,4 +1,4 @@
-# Links within the built site that lead nowhere: pages, pictures and anchors.
+# Finds links within the built site that lead nowhere: to pages, pictures and anchors.
 # SPDX-License-Identifier: Apache-2.0
 """Reads the HTML that Sphinx wrote; links to other sites are not followed."""
 import html.parser
@@ -20,7 +20,7 @@ class _Page(html.parser.HTMLParser):
 
 
 def broken(folder: pathlib.Path) -> list[str]:
-    """'page: link' of every link to a file or an anchor that is not there."""
+    """Returns 'page: link' of every link to a file or an anchor that is not there."""
     pages = {}
     for path in sorted(folder.rglob("*.html")):
         pages[path] = page = _Page()

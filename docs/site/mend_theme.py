@@ -1,6 +1,6 @@
-# What Debian's package of furo lost on its way, put back into the built site: it is made for a web server and for modules.
+# Puts back into the built site what Debian's package of furo lost. That package is made for a web server and for modules.
 # SPDX-License-Identifier: Apache-2.0
-"""The reset of margins, the dark scheme by the system's wish, and scripts that run from disk. What is there already stays."""
+"""Adds the reset of margins, the dark scheme by the system's wish, and scripts that run from disk. What is there already stays."""
 import pathlib
 import re
 import shutil
@@ -9,7 +9,7 @@ _PACKAGED_RESET = "/javascript/normalize.css/normalize.css"
 
 
 def mend(static: pathlib.Path) -> None:
-    """Changes furo's files in the folder `_static` of the site; RuntimeError when a part is missing."""
+    """Changes furo's files in the folder `_static` of the site. Raises RuntimeError when a part is missing."""
     style = static / "styles/furo.css"
     style.write_text(_dark_by_system(_own_reset(style.read_text(encoding="utf-8"), style.parent)), encoding="utf-8")
     script, spy = static / "scripts/furo.js", static / "scripts/gumshoe-patched.js"
@@ -31,7 +31,7 @@ def _own_reset(style: str, folder: pathlib.Path) -> str:
 
 
 def _dark_by_system(style: str) -> str:
-    """Debian's style compiler drops the rules for `auto`; they are those of `dark`, behind a question to the system."""
+    """Adds the rules for `auto`, which Debian's style compiler drops. They are those of `dark`, behind a question to the system."""
     if "prefers-color-scheme" in style:
         return style
     dark = re.search(r'body\[data-theme="dark"\] \{([^}]*)\}', style)

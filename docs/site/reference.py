@@ -1,6 +1,6 @@
-# The reference pages that the command itself tells: commands and options, policies, presets, keys, statistics, ops.
+# Writes the reference pages from what the command itself tells: commands and options, policies, presets, keys, statistics, ops.
 # SPDX-License-Identifier: Apache-2.0
-"""Writes pages into the site's copy of docs/; what is generated and committed is written anew, so that it fits the command."""
+"""Writes pages into the site's copy of docs/. Generated pages that are committed are written anew, so that they fit the command."""
 import pathlib
 import re
 import subprocess
@@ -15,7 +15,7 @@ def _run(glint, *words):
 
 
 def write(glint: str, root: pathlib.Path, source: pathlib.Path) -> None:
-    """All generated pages. `root` is the project, `source` the site's copy of docs/."""
+    """Writes all generated pages. `root` is the project, and `source` the site's copy of docs/."""
     import update_golden
     for name, text in update_golden.generated(glint):
         if name.startswith("docs/"):
@@ -29,7 +29,7 @@ def write(glint: str, root: pathlib.Path, source: pathlib.Path) -> None:
 
 
 def commands(glint: str) -> str:
-    """Every command's own help."""
+    """Returns the page with every command's own help."""
     pages = help_text.read_all(glint)
     top = pages.pop("")
     out = ["# Commands\n\nThis page has what `glint COMMAND --help` prints. The page [errors](../errors.md) explains exit codes. A command writes the data that you asked for to stdout, and everything else to stderr.\n", _tables(top)]
@@ -38,7 +38,7 @@ def commands(glint: str) -> str:
 
 
 def _tables(page: help_text.Help) -> str:
-    """The sections of a help text (Options, Positionals) as tables of what is written and what it means."""
+    """Returns the sections of a help text (Options, Positionals) as tables of what is written and what it means."""
     out = []
     for heading, entries in page.sections:
         out += [f"**{heading}:**\n"] if heading != "Options" else []
@@ -47,7 +47,7 @@ def _tables(page: help_text.Help) -> str:
 
 
 def _words(name: str) -> str:
-    """`--option`, then what it takes."""
+    """Returns `--option`, then what it takes."""
     option, _, takes = name.partition(" ")
     return f"`{option}`" + (f" {_cell(takes)}" if takes else "")
 
@@ -57,7 +57,7 @@ def _cell(text: str) -> str:
 
 
 def policies(glint: str) -> str:
-    """What can be chosen by name, by key."""
+    """Returns the page of what can be chosen by name, by key."""
     by_key: dict[str, list[tuple[str, str]]] = {}
     folders: dict[str, str] = {}
     for folder, key, name, doc in policy_table.listed(glint):
@@ -72,7 +72,7 @@ def policies(glint: str) -> str:
 
 
 def presets(glint: str, root: pathlib.Path) -> str:
-    """The presets side by side: every key in which two of them differ."""
+    """Returns the presets side by side, with every key in which two of them differ."""
     names = [line.split()[0] for line in _run(glint, "list", "configs").splitlines()]
     values = {name: _values(_run(glint, "describe", "--markdown", "--config", name)) for name in names}
     differ = [key for key in values[names[0]] if len({values[name].get(key) for name in names}) > 1]
@@ -84,12 +84,12 @@ def presets(glint: str, root: pathlib.Path) -> str:
 
 
 def _values(markdown: str) -> dict[str, str]:
-    """Key and value of the rows of `glint describe --markdown`."""
+    """Returns key and value of the rows of `glint describe --markdown`."""
     rows = (line.split("|") for line in markdown.splitlines() if line.startswith("| `"))
     return {row[1].strip(" `"): row[2].strip() for row in rows}
 
 
-# Public names of the package by section; a name of __all__ that no section has ends the build.
+# Lists the public names of the package by section. A name of __all__ that no section has ends the build.
 _PYTHON = {
     "Runs": ("Run", "Facts", "labels"), "Statistics": ("Stats", "Stat", "Histogram"), "Metrics": ("metrics", "Metric", "Metrics"), "Tables": ("Table",),
     "Folders of runs": ("Runs", "Bench", "Sweep"), "Comparison": ("compare", "Change", "speedup"), "Characterisation": ("Characterization",),
@@ -98,7 +98,7 @@ _PYTHON = {
 
 
 def python() -> str:
-    """The Python package, from its docstrings, by the names that users write."""
+    """Returns the page of the Python package, from its docstrings, by the names that users write."""
     import glint
     left = set(glint.__all__) - {"plot"} - {name for names in _PYTHON.values() for name in names}
     if left:
@@ -120,7 +120,7 @@ def _documented(module: Any, path: str, name: str) -> str:
 
 
 def _link_instructions(source: pathlib.Path) -> None:
-    """The tables of ops by preset are files to load, not pages."""
+    """Links the tables of ops by preset, which are files to load and not pages."""
     names = sorted(path.name for path in (source / "instructions").glob("*.csv"))
     if names:
         with open(source / "isa.md", "a", encoding="utf-8") as page:

@@ -1,4 +1,4 @@
-// Ambient occlusion by ray queries from a compute shader: no pipeline of shaders, no binding table.
+// Computes ambient occlusion by ray queries from a compute shader, which needs no pipeline of shaders and no binding table.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_query : require

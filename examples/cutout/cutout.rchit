@@ -1,4 +1,4 @@
-// The pane's colour by its instance.
+// Gives the pane the colour of its instance.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

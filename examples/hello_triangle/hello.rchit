@@ -1,4 +1,4 @@
-// The corners' colours, mixed by the barycentric coordinates of the hit.
+// Mixes the colours of the corners by the barycentric coordinates of the hit.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

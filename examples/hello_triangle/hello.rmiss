@@ -1,4 +1,4 @@
-// Background.
+// Gives the colour of the background.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

@@ -1,4 +1,4 @@
-// The Mandelbrot set: a thread a pixel, divergent where neighbours leave at different times.
+// Draws the Mandelbrot set with a thread per pixel. Warps diverge where neighbours leave the loop at different times.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,4 +1,4 @@
-// Sums a block of 256 numbers in shared memory, one result a block.
+// Sums the 256 numbers of each block in shared memory, and writes one result per block.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 layout(local_size_x = 256) in;

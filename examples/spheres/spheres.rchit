@@ -1,4 +1,4 @@
-// Light from above left; the normal comes from the intersection shader.
+// Lights the sphere from above left. The normal comes from the intersection shader.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

@@ -1,4 +1,4 @@
-// Sky.
+// Gives the colour of the sky.
 // SPDX-License-Identifier: Apache-2.0
 #version 460
 #extension GL_EXT_ray_tracing : require

@@ -32,17 +32,17 @@ class Characterization:
 
     @functools.cached_property
     def eigenvalues(self) -> Table:
-        """The table of eigenvalues, the largest first: component, eigenvalue, share of the variance, cumulative, kept (1 or 0)."""
+        """Returns the table of eigenvalues, the largest first: component, eigenvalue, share of the variance, cumulative, kept (1 or 0)."""
         return self.table("eigenvalues", "component", "eigenvalue", "cumulative", "kept")
 
     @functools.cached_property
     def scores(self) -> Table:
-        """The coordinates of the workloads in the components that were kept."""
+        """Returns the coordinates of the workloads in the components that were kept."""
         return self.table("scores", "workload", "PC1")
 
     @functools.cached_property
     def linkage(self) -> list[list[float]]:
-        """SciPy's linkage matrix for `scipy.cluster.hierarchy`. Each row is a merger: both clusters, their distance, and the number of leaves."""
+        """Returns SciPy's linkage matrix for `scipy.cluster.hierarchy`. Each row is a merger: both clusters, their distance, and the number of leaves."""
         rows = [list(row.values()) for row in self.table("linkage", "first", "second", "distance", "leaves")]
         if len(rows) != len(self.scores) - 1:
             raise SchemaError(f"{self.directory}: linkage.csv has {len(rows)} rows, but {len(self.scores)} workloads need {len(self.scores) - 1}")
@@ -50,16 +50,16 @@ class Characterization:
 
     @functools.cached_property
     def clusters(self) -> dict[str, int]:
-        """The cluster of each workload, in the order of the dendrogram's leaves."""
+        """Returns the cluster of each workload, in the order of the dendrogram's leaves."""
         leaves = self.table("leaves", "position", "workload", "cluster")
         return dict(zip(leaves["workload"], leaves["cluster"]))
 
     @functools.cached_property
     def subset(self) -> list[str]:
-        """The workloads that represent all workloads."""
+        """Returns the workloads that represent all workloads."""
         return self.table("subset", "workload")["workload"]
 
     @functools.cached_property
     def kiviat(self) -> Table:
-        """The chosen metrics of each workload, scaled so that the smallest value of all workloads is 0 and the largest is 1."""
+        """Returns the chosen metrics of each workload, scaled so that the smallest value of all workloads is 0 and the largest is 1."""
         return self.table("kiviat", "workload")

@@ -106,7 +106,7 @@ class Bench(Runs):
 
     @functools.cached_property
     def table(self) -> Table:
-        """The table metrics.csv as `glint bench` wrote it."""
+        """Returns the table metrics.csv as `glint bench` wrote it."""
         path = self.directory / "metrics.csv"
         if not path.is_file():
             raise MissingFile(f"{self.directory}: there is no metrics.csv: this is no folder of `glint bench`, or the bench was stopped")

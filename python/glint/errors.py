@@ -4,7 +4,7 @@
 
 
 class GlintError(Exception):
-    """The base class of all errors of this package."""
+    """Serves as the base class of all errors of this package."""
 
 
 class MissingFile(GlintError):

@@ -68,7 +68,7 @@ class Run:
 
     @property
     def workload(self) -> str:
-        """Scene and shader, e.g. "SHIP_SH". For pipelines and kernels it is the file's name, and for a pipeline.toml that of its first shader."""
+        """Returns scene and shader, such as "SHIP_SH". For pipelines and kernels it is the file's name, and for a pipeline.toml that of its first shader."""
         scene, shader = str(self.info.get("scene.name", "")), str(self.info.get("shader", ""))
         if shader in SHADERS:
             return f"{scene}_{shader.upper()}"
@@ -76,12 +76,12 @@ class Run:
 
     @property
     def config_name(self) -> str:
-        """The name of the preset or configuration file."""
+        """Returns the name of the preset or configuration file."""
         return str(self.info.get("config.name", ""))
 
     @functools.cached_property
     def stats(self) -> Stats:
-        """All statistics by dotted path."""
+        """Returns all statistics by dotted path."""
         path = self.file("stats.json", "every run that ends well")
         try:
             return Stats.from_tree(read_json(path))
@@ -90,12 +90,12 @@ class Run:
 
     @functools.cached_property
     def metrics(self) -> Metrics:
-        """The metrics of docs/metrics.md by name. A metric that the run does not have is None."""
+        """Returns the metrics of docs/metrics.md by name. A metric that the run does not have is None."""
         return Metrics(self)
 
     @functools.cached_property
     def config(self) -> Facts:
-        """Every configuration key by dotted name, with its value in the run."""
+        """Returns every configuration key by dotted name, with its value in the run."""
         path = self.file("config.toml", "every run")
         try:
             tree = tomllib.loads(read_text(path))
@@ -107,29 +107,29 @@ class Run:
 
     @property
     def cycles(self) -> int:
-        """The time of the launch in core clocks. Raises UnknownName for a functional run, which has none."""
+        """Returns the time of the launch in core clocks. Raises UnknownName for a functional run, which has none."""
         if self.info["mode"] != "timing":
             raise UnknownName(f"{self.directory}: a functional run has no cycles: run it with --mode timing")
         return self.stats["gpu.cycles"]
 
     @property
     def seconds(self) -> float:
-        """The time of the launch on the simulated GPU, in seconds."""
+        """Returns the time of the launch on the simulated GPU, in seconds."""
         return self.cycles / (self.config["clock_mhz"] * 1e6)
 
     @property
     def ipc(self) -> float:
-        """Warp instructions per cycle of the whole GPU, as `glint run` prints it. (The metric `ipc` counts lanes.)"""
+        """Returns warp instructions per cycle of the whole GPU, as `glint run` prints it. (The metric `ipc` counts lanes.)"""
         return self.stats.sum("gpu.core[*].instructions") / self.cycles if self.cycles else 0.0
 
     @functools.cached_property
     def image(self) -> Any:
-        """The picture as the shader wrote it: a float32 array of the shape (height, width, 3)."""
+        """Returns the picture as the shader wrote it: a float32 array of the shape (height, width, 3)."""
         return read_image(self.file("image.pfm", "runs of scenes"))
 
     @functools.cached_property
     def series(self) -> Table:
-        """The run over time, with a row per interval (docs/profiling.md)."""
+        """Returns the run over time, with a row per interval (docs/profiling.md)."""
         path = self.file("series.csv", "`glint run --sample CYCLES`")
         table = Table.read(path, needs=("cycle", "ipc"), whole=True)
         ends, whole = table["cycle"][-1] if len(table) else 0, self.directory / "stats.json"
@@ -140,12 +140,12 @@ class Run:
 
     @functools.cached_property
     def profile(self) -> Table:
-        """Cycles by instruction and by source line (docs/profiling.md)."""
+        """Returns cycles by instruction and by source line (docs/profiling.md)."""
         return Table.read(self.file("profile.csv", "`glint run --profile`"), needs=("by", "stage", "line", "op", "issues", "cycles"), whole=True)
 
     @functools.cached_property
     def folded(self) -> dict[str, int]:
-        """Cycles by call stack. Frames are separated by ';', which is the input format of flame graphs."""
+        """Returns cycles by call stack. Frames are separated by ';', which is the input format of flame graphs."""
         path, stacks = self.file("profile.folded", "`glint run --profile`"), {}
         for number, line in enumerate(read_text(path).splitlines(), 1):
             stack, _, cycles = line.rpartition(" ")
@@ -156,7 +156,7 @@ class Run:
 
     @property
     def map_names(self) -> list[str]:
-        """The names of the maps of cost by pixel that the run left in `heat/`, or [] when it left none."""
+        """Returns the names of the maps of cost by pixel that the run left in `heat/`, or [] when it left none."""
         return sorted(path.stem for path in (self.directory / "heat").glob("*.npy"))
 
     def map_info(self, name: str) -> Facts:

@@ -14,7 +14,7 @@ namespace glint::report {
 //  - A statistic that is in every run and instance exactly the quotient of two others is in "quotients" as
 //    their two names.
 //  - The files and programs of "source" appear once, in "listings".
-//  - page_rows.h treats timelines and counts of sources.
+//  - report/page/rows.h treats timelines and counts of sources.
 //  - Pictures are left out, because the page has them as pictures.
 //  - Whole numbers are written without a fraction.
 // web/src/document.js turns it back, and nothing is rounded.

@@ -1,6 +1,6 @@
 # Shares with all tests of the command: the binary, a folder to run it in, and checks of what it says.
 # SPDX-License-Identifier: Apache-2.0
-"""For scripts that are called with GLINT SOURCE_DIR [SUITE...]."""
+"""Scripts that use this module are called with GLINT SOURCE_DIR [SUITE...]."""
 import base64
 import json
 import os

@@ -47,7 +47,7 @@ class Frames(GlintTest):
 
 
 class Plugin(GlintTest):
-    """An issue scheduler that knows only an installed Glint."""
+    """Tests an issue scheduler that knows only an installed Glint."""
     @classmethod
     def setUpClass(cls):
         build = GLINT.parents[2]

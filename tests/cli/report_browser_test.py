@@ -64,7 +64,7 @@ class Browser(ReportTest):
             self.assertAlmostEqual(drawn[name], value, delta=abs(value) * 1e-5, msg=name)
 
     def tables_equal_stats(self, text, name):
-        """Tables of figures have the sums of stats.json, and every figure has a drawing."""
+        """Checks that tables of figures have the sums of stats.json, and that every figure has a drawing."""
         figures = {re.search(r'id="([\w-]+)"', head).group(1): body for head, body in re.findall(r'<figure ([^>]*id="[^>]*)>(.*?)</figure>', text, re.S)}
         for expected in ("cpi-stack", "instruction-mix", "stages", "stage-cycles", "ops", "op-latency", "rt-use", "traversal", "rt-cycles", "fetch-mix", "ray-nodes", "l1", "l2", "miss-stages", "dram", "dram-clocks", "series"):
             self.assertRegex(figures[expected], r"<svg.*<path", expected)
@@ -79,7 +79,7 @@ class Browser(ReportTest):
         self.stages_equal_stats(figures["stages"], name)
 
     def stages_equal_stats(self, figure, name):
-        """Counts and latencies of every stage and class have the sums of the whole."""
+        """Checks that counts and latencies of every stage and class add up to those of the whole."""
         rows = {stage: [float(value) for value in re.findall(r'data-value="([^"]*)"', row)] for stage, row in re.findall(r'<tr><th scope="row">([^<]*)</th>(.*?)</tr>', figure, re.S)}
         self.assertEqual(list(rows), ["ray generation", "intersection", "closest hit", "miss"])
         for shown, stage in zip(rows, ("raygen", "intersection", "closest_hit", "miss")):

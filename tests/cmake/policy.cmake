@@ -1,4 +1,4 @@
-# Every policy, from the command: its cycles, the bytes of two frames, and policies that are built outside of the tree.
+# Adds tests of every policy by the command: its cycles, the bytes of two frames, and policies that are built outside of the tree.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Table Frames Plugin NewPolicy)

@@ -94,7 +94,7 @@ std::array<float, 3> scaled_point(Random& random, float size) {
   return p;
 }
 
-// The test takes any number of children up to the format's width, of any size and place.
+// The test takes any number of children up to the format's width, of any size and at any place.
 TEST_CASE("boxes as decoded contain what they were made of") {
   for (const std::string& name : Registry<NodeFormat>::names()) {
     CAPTURE(name);
@@ -151,8 +151,8 @@ TEST_CASE("the validator finds damage in every node format") {
       view[at] = before;
     }
     CHECK(validate(memory, info.address).empty());
-    CHECK(found > node_bytes / 4);  // of the bytes changed one by one; changes of low bits of planes and of
-                                    // padding may go unseen
+    // The bytes are changed one by one. Changes of low bits of planes and of padding may go unseen.
+    CHECK(found > node_bytes / 4);
   }
 }
 

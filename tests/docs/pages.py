@@ -10,7 +10,7 @@ COMMANDS = r"(\$ |glint |build/release/apps/glint/glint |\./(demo|check)\b|docs/
 
 @dataclasses.dataclass(frozen=True)
 class Block:
-    """A fenced block: `kind` is shell, python, cpp or other; `text` is what is run."""
+    """Holds a fenced block. `kind` is shell, python, cpp or other, and `text` is what is run."""
     page: str
     line: int
     kind: str

@@ -58,7 +58,7 @@ PATTERNS = {header: re.compile(pattern) for header, pattern in USES.items()}
 
 
 def code_of(text):
-    """The text without comments, strings and raw strings."""
+    """Returns the text without comments, strings and raw strings."""
     text = re.sub(r'R"(\w*)\(.*?\)\1"', '""', text, flags=re.S)
     text = re.sub(r'"(?:\\.|[^"\\\n])*"', '""', text)
     return re.sub(r"//[^\n]*", "", text)
@@ -69,7 +69,7 @@ def included(text):
 
 
 def missing(root, path):
-    """The headers of the standard library that the file uses, in alphabetical order, less those that it has."""
+    """Returns the headers of the standard library that the file uses, in alphabetical order, less those that it has."""
     text = path.read_text()
     present = included(text)
     if path.suffix == ".cpp":

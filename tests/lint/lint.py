@@ -25,7 +25,7 @@ def files(root, folders, suffixes=(".h", ".cpp")):
 
 
 def layers(root):
-    """Every include goes down the layers."""
+    """Checks that every include goes down the layers."""
     allowed = {}
     for line in (root / "tests/lint/layers.txt").read_text().splitlines():
         if line and not line.startswith("#"):
@@ -73,7 +73,7 @@ def function_lengths(path):
 
 
 def sizes(root):
-    """Files and functions stay short; the ten longest functions are listed."""
+    """Checks that files and functions stay short, and lists the ten longest functions."""
     problems, functions = [], []
     for path in files(root, SOURCE_FOLDERS):
         name = str(path.relative_to(root))
@@ -90,7 +90,7 @@ def sizes(root):
 
 
 def clang_format():
-    """The command of the version that the tree is laid out with, or None."""
+    """Returns the command of the version that the tree is laid out with, or None."""
     for name in (f"clang-format-{CLANG_FORMAT}", "clang-format"):
         try:
             out = subprocess.run([name, "--version"], capture_output=True, text=True, check=True).stdout
@@ -102,7 +102,7 @@ def clang_format():
 
 
 def layout(root):
-    """Every source is laid out as clang-format does it."""
+    """Checks that every source is laid out as clang-format does it."""
     command = clang_format()
     if command is None:
         print(f"SKIPPED: layout: clang-format {CLANG_FORMAT} is not installed")
@@ -114,12 +114,12 @@ def layout(root):
 
 
 def includes(root):
-    """Each file includes the standard headers that it uses."""
+    """Checks that each file includes the standard headers that it uses."""
     return standard_includes.problems(root, files(root, SOURCE_FOLDERS + ["tests"]))
 
 
 def headers(root):
-    """Each source begins with a sentence and the licence; headers are guarded."""
+    """Checks that each source begins with a sentence and the licence, and that headers are guarded."""
     problems = []
     for path in files(root, SOURCE_FOLDERS + ["tests", "shaders", "python"], (".h", ".cpp", ".py", ".sh", ".glsl", ".rgen", ".rchit", ".rahit", ".rint", ".rmiss")):
         name = str(path.relative_to(root))
@@ -137,7 +137,7 @@ def headers(root):
 
 
 def readmes(root):
-    """Every folder of sources explains itself in at most 40 lines, and tests/README.md names every folder of tests."""
+    """Checks that every folder of sources explains itself in at most 40 lines, and that tests/README.md names every folder of tests."""
     listed = (root / "tests/README.md").read_text() if (root / "tests/README.md").exists() else ""
     folders = sorted(path.name for path in (root / "tests").iterdir() if path.is_dir() and path.name != "__pycache__")
     problems = [f"tests/README.md: does not name {folder}/" for folder in folders if f"`{folder}/`" not in listed]
@@ -151,7 +151,7 @@ def readmes(root):
 
 
 def doc_paths(root):
-    """Paths that the docs name exist. A path is a `code` word with a slash in which only its folder must be ours."""
+    """Checks that the paths that the docs name exist. A path is a `code` word with a slash in which only its folder must be ours."""
     tops = {p.name for p in root.iterdir()} - {"build", "out"}
     problems = []
     for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + list((root / "docs/howto").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]]):
@@ -167,7 +167,7 @@ def doc_paths(root):
 
 
 def semantics(root):
-    """Every rule of docs/semantics.md names tests, between asterisks, and those exist."""
+    """Checks that every rule of docs/semantics.md names tests, between asterisks, and that those exist."""
     known = set()
     for path in (root / "tests").rglob("*_test.cpp"):
         text = re.sub(r'"\s*\n\s*"', "", path.read_text())
@@ -186,7 +186,7 @@ def semantics(root):
 
 
 def wording(root):
-    """No loose ends, no environment or printing in libraries."""
+    """Checks that there are no loose ends, and that libraries neither read the environment nor print."""
     problems = []
     for path in files(root, SOURCE_FOLDERS):
         name = str(path.relative_to(root))
@@ -204,7 +204,7 @@ def wording(root):
 
 
 def policies(root, glint):
-    """Each policy file registers exactly one policy, and the linker kept them all."""
+    """Checks that each policy file registers exactly one policy, and that the linker kept them all."""
     out = subprocess.run([glint, "list", "policies"], capture_output=True, text=True, check=True).stdout
     registered = {}
     for line in out.splitlines():

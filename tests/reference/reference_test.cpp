@@ -55,7 +55,7 @@ TEST_CASE("a ray through a shared edge meets at least one of its two triangles")
     const Vec a(draw(), draw(), 0), b(draw(), draw(), 0), left(-3, draw(), draw()), right(3, draw(), draw());
     const Vec origin(draw(), draw(), 4);
     const Ray ray{origin, a + (b - a) * (0.1f + 0.8f * std::abs(draw())) - origin, 0, 100};
-    // `left` and `right` lie on either side of the edge as the ray sees it
+    // `left` and `right` lie on either side of the edge as the ray sees it.
     Hit hit;
     const auto side = [&](const Vec& p) {
       const Vec e = b - a, q = p - a;

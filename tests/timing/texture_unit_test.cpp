@@ -146,7 +146,7 @@ TEST_CASE("a full queue of textures holds back textures only") {
   core.run();
 
   REQUIRE_FALSE(core.cell->fault());
-  // exec::Issued in 0, 1, 2 (one has been taken in 1), then as places come free in 5, 9 and 13.
+  // They issue in 0, 1, 2 (one has been taken in 1), then as places come free in 5, 9 and 13.
   CHECK(core.stats().stalls.count(Stall::TexThrottle) == (5 - 3) + (9 - 6) + (13 - 10));
   CHECK(core.stats().stalls.count(Stall::LsuThrottle) == 0);
 }

@@ -23,8 +23,9 @@ bool is_float(Kind kind) {
   return kind == F32 || kind == F64;
 }
 
-// Says how operands are made fit. Any: not at all. Count: less than the width. NotZero: not zero. Field:
-// three more operands of a bit field.
+// Says how an op's operands and result are formed. Any takes operands as they are and gives their type. The
+// count of a Shift is masked to the width, and the divisor of a Divide is made odd, so it is not 0. The other
+// forms have operands or results of their own shape.
 enum class Form : uint8_t {
   Any,
   Shift,

@@ -12,7 +12,7 @@ inline constexpr uint32_t kExpressionInputs = 256;
 
 struct ExpressionProgram {
   std::vector<uint32_t> spirv;
-  // What each value computes, in the order of their words in a lane's results.
+  // Says what each value computes, in the order of the values' words in a lane's results.
   std::vector<std::string> values;
   uint32_t lanes = 64;
 };

@@ -87,11 +87,12 @@ struct Stmt {
     Leave,      // to the end of the `if` whose branch this list is
     NextCase,   // to the next case of the switch whose case this list is
   } kind = Kind::Trace;
-  // This is the style of a loop. Single: one block. SkipFirst: the header goes to the body or to the continue
-  // target.
+  // This is the style of a loop. A Single loop is one block. The header of a SkipFirst loop goes to the body
+  // or to the continue target.
   enum class Style : uint8_t { While, HeaderTest, DoWhile, Endless, Single, SkipFirst } style = Style::While;
   bool bare = false;  // If: a conditional branch without a merge, because its only statement is an exit
-  // If, Switch, Loop: code goes on where nothing arrives. Otherwise OpUnreachable is there.
+  // It is used by If, Switch and Loop. If true, code goes on where nothing arrives; otherwise OpUnreachable
+  // is there.
   bool dead = false;
   uint32_t value = 0, other = 0;
   std::vector<Expr> args;

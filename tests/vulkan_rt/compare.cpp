@@ -18,7 +18,7 @@ constexpr uint32_t kTriangle = 1, kSphere = 2;  // Record::kind of hits
 constexpr uint32_t kTerminateOnFirstHit = 0x4;
 constexpr double kTolerance = 1e-5;  // relative, of t; absolute, of weights
 constexpr double kUnit = 0x1p-24;    // half a unit in the last place, relative
-// Number of roundings, all in one direction, that a shader or a unit for triangles may make on the way to a
+// A shader, or a unit for triangles, may make this many roundings, all in one direction, on the way to a
 // result.
 constexpr double kRoundings = 16;
 

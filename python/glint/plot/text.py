@@ -65,7 +65,7 @@ class Fitted:
 
     @property
     def below(self) -> float:
-        """The height in inches that the names take below an axis."""
+        """Returns the height in inches that the names take below an axis."""
         return self.width if self.upright else self.height
 
 

@@ -12,7 +12,7 @@ WIDTH, HEIGHT = 20, 14
 
 
 def pair(name):
-    """Two pictures, [y][x] -> (r, g, b), that flip_test.cpp makes by the same rules."""
+    """Returns two pictures, [y][x] -> (r, g, b), that flip_test.cpp makes by the same rules."""
     def noise(x, y, c, seed):
         return ((x * 37 + y * 101 + c * 53 + x * y * 7 + seed * 71) % 97) / 96
 
@@ -28,7 +28,7 @@ def pair(name):
 
 
 def matrix():
-    """Linear RGB to XYZ from the chromaticities of primaries and white, in fractions: column i is primary i times its share."""
+    """Returns the matrix from linear RGB to XYZ from the chromaticities of primaries and white, in fractions: column i is primary i times its share."""
     xy = [(64, 33), (30, 60), (15, 6)]
     columns = [[Fraction(x, y), Fraction(1), Fraction(100 - x - y, y)] for x, y in xy]
     white = [Fraction(3127, 3290), Fraction(1), Fraction(10000 - 3127 - 3290, 3290)]
@@ -46,7 +46,7 @@ TO_XYZ, WHITE = matrix()
 
 
 def solve(v):
-    """TO_XYZ^-1 v, by Cramer's rule."""
+    """Returns TO_XYZ^-1 v, by Cramer's rule."""
     def det(m):
         return (m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
                 + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]))
@@ -114,7 +114,7 @@ def feature(plane, ppd, second):
 
 
 def look(picture, ppd):
-    """Lab of each pixel as seen, edges, points."""
+    """Returns Lab of each pixel as seen, edges and points."""
     c = [[ycc([linear(v) for v in rgb]) for rgb in row] for row in picture]
     planes = [seen([[v[i] for v in row] for row in c], i, ppd) for i in range(3)]
 
