@@ -1,8 +1,11 @@
-// Holds GLSL extensions as macros and functions of the extensions that glslang 12 has.
+// Holds GLSL extensions as macros and functions of the extensions that glslang 12 has, for a glslang that
+// lacks them.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/glsl/newer_glsl.h"
 
 #include <algorithm>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
 
 namespace glint::frontend {
 namespace {
@@ -12,7 +15,7 @@ constexpr std::string_view kPrefix = "extension:";
 // These are hints to the compiler, which it may ignore.
 constexpr std::string_view kExpectAssume = R"(
 #define expectEXT(value, expected) (value)
-#define assumeTrueEXT(condition)
+#define assumeEXT(condition) (condition)
 )";
 // For Glint the extension only adds the name of an attribute, and glslang skips attributes that it does not
 // know.
@@ -80,7 +83,8 @@ spirv_decorate(extensions = ["SPV_KHR_ray_tracing_position_fetch"], capabilities
 #endif
 )";
 
-// Gives GL_NV_shader_invocation_reorder the names of its later multi-vendor extension.
+// Gives GL_NV_shader_invocation_reorder the names of its later multi-vendor extension. This holds for every
+// glslang, because the lowering reads the vendor's instructions only.
 constexpr std::string_view kInvocationReorder = R"(
 #extension GL_NV_shader_invocation_reorder : enable
 #define hitObjectEXT hitObjectNV
@@ -121,6 +125,7 @@ constexpr std::string_view kInvocationReorder = R"(
 
 struct Extension {
   std::string_view name, text, more_of_hit_shaders;
+  bool is_always_ours = false;
 };
 constexpr Extension kExtensions[] = {
     {"GL_EXT_expect_assume", kExpectAssume, {}},
@@ -129,8 +134,31 @@ constexpr Extension kExtensions[] = {
     {"GL_KHR_shader_subgroup_rotate", kSubgroupRotate, {}},
     {"GL_EXT_integer_dot_product", kDotProduct, {}},
     {"GL_EXT_ray_tracing_position_fetch", kPositionsOfQueries, kPositionsOfHits},
-    {"GL_EXT_shader_invocation_reorder", kInvocationReorder, {}},
+    {"GL_EXT_shader_invocation_reorder", kInvocationReorder, {}, true},
 };
+
+// Returns glslang's messages on a shader that asks for every extension of the table. glslang says "extension
+// not supported" of those that it lacks. Its macros do not tell: glslang 15 defines none for some that it
+// has.
+std::string said_of_extensions() {
+  std::string source = "#version 460\n";
+  for (const Extension& each : kExtensions) source += "#extension " + std::string(each.name) + " : enable\n";
+  source += "void main() {}\n";
+  const char* const text = source.c_str();
+  glslang::TShader shader(EShLangCompute);
+  shader.setStrings(&text, 1);
+  shader.setEnvInput(glslang::EShSourceGlsl, EShLangCompute, glslang::EShClientVulkan, 460);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+  shader.parse(GetDefaultResources(), 460, false, EShMessages(EShMsgSpvRules | EShMsgVulkanRules));
+  return shader.getInfoLog();
+}
+
+bool is_ours(const Extension& extension) {
+  static const std::string said = said_of_extensions();  // thread-safe since C++11
+  return extension.is_always_ours ||
+         said.find("extension not supported: " + std::string(extension.name)) != std::string::npos;
+}
 
 constexpr std::string_view kBlanks = " \t";
 
@@ -142,11 +170,13 @@ bool accept(std::string_view& text, std::string_view word) {
   return true;
 }
 
+// Returns the extension of ours that a line enables.
 std::string_view extension_named_by(std::string_view line) {
   if (!accept(line, "#") || !accept(line, "extension")) return {};
   for (const Extension& each : kExtensions) {
     std::string_view rest = line;
-    if (accept(rest, each.name) && accept(rest, ":") && !accept(rest, "disable")) return each.name;
+    if (accept(rest, each.name) && accept(rest, ":") && !accept(rest, "disable") && is_ours(each))
+      return each.name;
   }
   return {};
 }

@@ -9,7 +9,7 @@
 namespace glint::frontend {
 
 // Replaces `#extension` lines that enable such an extension by `#include` lines. All lines keep their
-// numbers.
+// numbers. The process must have initialised glslang, which is asked once what it knows.
 void say_extensions_anew(std::string& text);
 
 // Returns the text for such an `#include` line, and an empty text for every other header.

@@ -1,5 +1,6 @@
 // Tests GLSL that is newer than glslang 12, and images of several samples.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -69,6 +70,30 @@ TEST_CASE("extensions younger than the compiler mean what they say: hints, rotat
       CHECK(int32_t(got[160 + lane]) == std::numeric_limits<int32_t>::min());
       CHECK(got[192 + lane] == 0xffff'ffff);
       CHECK(int32_t(got[224 + lane]) == int32_t(lane) - 10 + 21);
+    }
+  }
+}
+
+TEST_CASE("dot products wrap at 32 bits, or saturate together with the number that they are added to") {
+  for (const LabOptions& options : compute_lab_options()) {
+    ComputeLab lab("newer/dots.comp");
+    lab.buffers[0] = Words(224);
+    lab.run(options);
+    const auto clamped = [](int64_t x) {
+      return uint32_t(
+          std::clamp<int64_t>(x, std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max()));
+    };
+    for (uint32_t lane = 0; lane < 32; ++lane) {
+      INFO(to_string(options) << " lane " << lane);
+      const auto got = [&](uint32_t i) { return lab.buffers[0][32 * i + lane]; };
+      const int64_t l = lane;
+      CHECK(int32_t(got(0)) == -2 * l - 9);  // the first product is 2^32
+      CHECK(got(1) == 128 * l + 255 * 255 + 2 + 255 * 255);
+      CHECK(int32_t(got(2)) == -128 * 255 - 255 + 2 + 3 * l);
+      CHECK(got(3) == 85 + 2 * l);
+      CHECK(got(4) == clamped(-32768 * 32767 + l - 1073774600));  // the first eight lanes are below the range
+      CHECK(got(5) == (lane < 13 ? 0xfffffff3 + lane : ~0u));
+      CHECK(got(6) == clamped(127 * 255 + l + 2147451250));  // lanes from 13 on are above the range
     }
   }
 }

@@ -11,7 +11,7 @@ layout(set = 0, binding = 0) nontemporal buffer Results { uint results[]; };
 
 [[maximally_reconverges]] void main() {
   const uint lane = gl_LocalInvocationIndex;
-  assumeTrueEXT(lane < 32u);
+  assumeEXT(lane < 32u);
   uint value = expectEXT(lane > 3u, true) ? lane * 10u : 7u;
   results[lane] = subgroupRotate(value, 5);
   results[32 + lane] = subgroupClusteredRotate(lane, 3u, 8u);
