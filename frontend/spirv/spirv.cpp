@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <span>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv/unified1/spirv.hpp11>
 #include <string_view>
@@ -60,9 +61,53 @@ std::string missing_components(const std::vector<uint32_t>& words) {
   return {};
 }
 
+bool is_one_per_entry_point(spv::StorageClass storage) {
+  return storage == spv::StorageClass::IncomingRayPayloadKHR ||
+         storage == spv::StorageClass::IncomingCallableDataKHR ||
+         storage == spv::StorageClass::HitAttributeKHR;
+}
+
+// Reports the second variable of a storage class of which an entry point may have one. Younger validators
+// report it, too. Source: Vulkan specification, VUID-StandaloneSpirv-IncomingRayPayloadKHR-04700,
+// VUID-StandaloneSpirv-HitAttributeKHR-04702, VUID-StandaloneSpirv-IncomingCallableDataKHR-04706. The words
+// are not validated yet.
+std::string second_incoming(std::span<const uint32_t> words) {
+  std::map<uint32_t, std::string> names;
+  std::map<uint32_t, spv::StorageClass> storage_of;
+  std::vector<std::span<const uint32_t>> entry_points;
+  for (size_t at = kHeaderWords, length = 0; at < words.size(); at += length) {
+    length = words[at] >> 16;
+    const spv::Op op = op_of(words[at]);
+    if (length == 0 || length > words.size() - at || op == spv::Op::OpFunction) break;
+    if (length < 4) continue;
+    if (op == spv::Op::OpEntryPoint) entry_points.push_back(words.subspan(at, length));
+    if (op == spv::Op::OpName) names[words[at + 1]] = text_at(words.subspan(at + 2, length - 2));
+    if (op == spv::Op::OpVariable) storage_of[words[at + 2]] = spv::StorageClass(words[at + 3]);
+  }
+  const auto name_of = [&](uint32_t id) {
+    const auto it = names.find(id);
+    return it == names.end() ? fmt::format("%{}", id) : fmt::format("'{}'", it->second);
+  };
+  for (const std::span<const uint32_t> entry_point : entry_points) {
+    const std::string name = text_at(entry_point.subspan(3));
+    std::map<spv::StorageClass, uint32_t> first;
+    for (size_t i = 3 + words_of(name).size(); i < entry_point.size(); ++i) {
+      const auto it = storage_of.find(entry_point[i]);
+      if (it == storage_of.end() || !is_one_per_entry_point(it->second)) continue;
+      const auto [earlier, is_new] = first.emplace(it->second, it->first);
+      if (!is_new && earlier->second != it->first)
+        return fmt::format(
+            "entry point '{}' has two variables of storage class {}, {} and {}, and Vulkan allows one\n",
+            name, name_of_storage_class(uint32_t(it->second)), name_of(earlier->second), name_of(it->first));
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string validate_spirv(const std::vector<uint32_t>& words) {
+  if (std::string second = second_incoming(words); !second.empty()) return second;
   std::string messages;
   bool only_false_alarms = false;
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);

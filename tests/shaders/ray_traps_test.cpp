@@ -1,5 +1,4 @@
-// Tests ray tracing where it surprises: ends of rays by stage, bits that do not count, payloads with two
-// names.
+// Tests ray tracing where it surprises: ends of rays by stage, bits that do not count.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
@@ -56,17 +55,6 @@ TEST_CASE("of a trace's offset and stride count 4 bits, of its miss index 16, of
     const uint32_t record = (x >= 6 ? 4 : 0) + (x & 1) * (1 + (lane >> 1 & 1)) + (lane & 1);
     if (x < 2 || is_masked || record >= 6) return Row{lane % 2 ? 0u : 30u};
     return Row{tags[record]};
-  });
-}
-
-TEST_CASE("several incoming payloads of one shader are the same memory") {
-  RayLab lab({"traps/aliases.rgen",
-              {""},
-              {{"traps/aliases.rchit", "", ""}, {"traps/aliases.rchit", "", ""}, {}, {}, {}, {}},
-              {}});
-  check_pixels(lab, [](uint32_t x, uint32_t) {
-    if (x < 2 || x >= 6) return Row{bits(0.25f), bits(0.25f), bits(0.25f), bits(0.25f)};
-    return Row{bits(1.5f), 7, bits(8.5f), bits(0.25f)};
   });
 }
 

@@ -41,13 +41,44 @@ TEST_CASE("a mistake in a file that an included file includes is reported there"
 
 TEST_CASE(
     "a capability younger than the validator is refused by its number, with the extension that brings it") {
-  CHECK_THAT(message_of<UnsupportedError>("cluster.rchit"),
-             Contains("capability 5437") && Contains("SPV_NV_cluster_acceleration_structure"));
+  CHECK_THAT(message_of<UnsupportedError>("future.rchit"),
+             Contains("capability 2147483000") && Contains("SPV_GLINT_from_the_future"));
 }
 
 TEST_CASE("a GLSL extension younger than the compiler is refused by name at its line") {
-  CHECK_THAT(message_of<UserError>("spheres.rchit"),
-             Contains(":5: error: '#extension' : extension not supported: GL_NV_linear_swept_spheres"));
+  CHECK_THAT(message_of<UserError>("future.rmiss"),
+             Contains(":5: error: '#extension' : extension not supported: GL_GLINT_from_the_future"));
+}
+
+TEST_CASE(
+    "a second incoming payload, callable data or hit attribute of a shader is refused, and both are named") {
+  struct Row {
+    const char* qualifier;
+    isa::Stage stage;
+    const char* storage;
+  };
+  const Row rows[] = {{"rayPayloadIn", isa::Stage::Miss, "IncomingRayPayloadKHR"},
+                      {"rayPayloadIn", isa::Stage::ClosestHit, "IncomingRayPayloadKHR"},
+                      {"callableDataIn", isa::Stage::Callable, "IncomingCallableDataKHR"},
+                      {"hitAttribute", isa::Stage::AnyHit, "HitAttributeKHR"}};
+  for (const Row& row : rows) {
+    INFO(row.qualifier);
+    const bool has_location = std::string(row.qualifier) != "hitAttribute";
+    const auto declared = [&](int location, const char* name) {
+      return (has_location ? "layout(location = " + std::to_string(location) + ") " : std::string()) +
+             row.qualifier + "EXT vec2 " + name + ";\n";
+    };
+    const auto compile = [&](const std::string& declarations) {
+      frontend::glsl_text_to_spirv(
+          "#version 460\n#extension GL_EXT_ray_tracing : require\n" + declarations + "void main() {}\n",
+          "twice", row.stage, {});
+    };
+    CHECK_NOTHROW(compile(declared(0, "first")));
+    CHECK_THROWS_WITH(compile(declared(0, "first") + declared(1, "second")),
+                      Contains("twice: error: ") &&
+                          Contains("two variables of storage class " + std::string(row.storage)) &&
+                          Contains("'first'") && Contains("'second'"));
+  }
 }
 
 TEST_CASE("functions that would grow past all bounds when inlined are refused at once, by name and number") {
