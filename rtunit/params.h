@@ -41,11 +41,11 @@ inline std::vector<std::string> unit_names() {
 struct Params {
   std::string unit{kHardware};
   uint32_t warps = 4;               // Vulkan-Sim 2.0, -gpgpu_rt_max_warps, both shipped configurations
-  uint32_t requests_per_cycle = 1;  // Vulkan-Sim sends one request a cycle
+  uint32_t requests_per_cycle = 1;  // Vulkan-Sim sends one request per cycle
   uint32_t request_bytes = 64;      // Choice: a node takes one request; Vulkan-Sim sends 32 B
   uint32_t responses_per_cycle = 1;
   uint32_t mshr_entries = 64;      // Vulkan-Sim has -gpgpu_rt_max_mshr_entries 64 without effect
-  uint32_t retires_per_cycle = 1;  // Vulkan-Sim gives back one warp a cycle
+  uint32_t retires_per_cycle = 1;  // Vulkan-Sim gives back one warp per cycle
   // Choice: a ray with TerminateOnFirstHit takes the nearest hit. Which hit is found first depends on the
   // order of traversal; the nearest does not, so no policy changes a picture. Hardware ends at the first hit
   // found, and visits up to a fifth fewer nodes.

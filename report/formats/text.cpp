@@ -1,4 +1,4 @@
-// Implements the format `text` of statistics: aligned text for reading and grep, `path   value  unit  # doc`.
+// Implements the format `txt` of statistics: aligned text for reading and grep, `path   value  unit  # doc`.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>

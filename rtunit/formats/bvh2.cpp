@@ -1,4 +1,4 @@
-// Registers the node format `bvh2`.
+// Implements the node format `bvh2`: this file registers it, and bvh2.h defines its nodes.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh2.h"
 

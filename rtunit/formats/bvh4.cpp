@@ -1,4 +1,4 @@
-// Registers the node format `bvh4`.
+// Implements the node format `bvh4`: this file registers it, and bvh4.h defines its nodes.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh4.h"
 

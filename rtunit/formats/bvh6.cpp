@@ -1,4 +1,4 @@
-// Registers the node format `bvh6` and writes its nodes.
+// Implements the node format `bvh6`: this file registers it and writes its nodes.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh6.h"
 

@@ -1,4 +1,4 @@
-// Defines the node format `bvh6`: 64-byte nodes of six boxes in 8 bits a plane, as Intel's hardware and the
+// Defines the node format `bvh6`: 64-byte nodes of six boxes in 8 bits per plane, as Intel's hardware and the
 // published simulators have it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,4 +1,5 @@
-// Registers the node format `bvh8` and writes its nodes, packed at 80 bytes, with the leaves behind them.
+// Implements the node format `bvh8`: this file registers it and writes its nodes, packed at 80 bytes, with
+// the leaves behind them.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/formats/bvh8.h"
 

@@ -1,4 +1,4 @@
-// Defines the node format `bvh8`: 80-byte nodes of eight boxes in 8 bits a plane (Ylitie, Karras, Laine
+// Defines the node format `bvh8`: 80-byte nodes of eight boxes in 8 bits per plane (Ylitie, Karras, Laine
 // 2017).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

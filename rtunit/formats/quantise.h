@@ -1,5 +1,5 @@
-// Writes boxes in 8 bits a plane. The number of a plane counts steps from the origin of its axis, and a step
-// is a power of two (Ylitie et al. 2017, section 3.1).
+// Writes boxes in 8 bits per plane. The number of a plane counts steps from the origin of its axis, and a
+// step is a power of two (Ylitie et al. 2017, section 3.1).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>

@@ -1,4 +1,4 @@
-// Tests, writes and decodes nodes with boxes in 8 bits a plane, for all formats of that kind.
+// Tests, writes and decodes nodes with boxes in 8 bits per plane, for all formats of that kind.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>

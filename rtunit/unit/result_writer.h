@@ -11,8 +11,8 @@
 
 namespace glint::rt {
 
-// Model: results are written as node traffic, 32 B a ray, one request a line. The warp is given back when the
-// L1 has taken them.
+// Model: results are written as node traffic, 32 B per ray, one request per line. The warp is given back when
+// the L1 has taken them.
 class ResultWriter final : public RequestSource, public WarpExit {
  public:
   // `results` is the physical, line-aligned address of bytes() for all slots of the warp buffer.
