@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-BOUNDS = {"rays": 1, "nodes a ray": 5, "RT memory accesses": 10, "cycles": 20}
+BOUNDS = {"rays": 1, "nodes per ray": 5, "RT memory accesses": 10, "cycles": 20}
 
 
 def number(text, key):
@@ -31,7 +31,7 @@ def read_log(path):
     l1 = number(text, "\tL1D_total_cache_accesses")
     return {
         "rays": number(text, "rt_n_total_rays"),
-        "nodes a ray": number(text, "rt_avg_nodes_per_ray"),
+        "nodes per ray": number(text, "rt_avg_nodes_per_ray"),
         "most nodes of a ray": number(text, "rt_max_nodes_per_ray"),
         "RT memory accesses": number(text, "gpgpu_n_rt_access_insn"),
         "RT writes": number(text, "rt_writes"),
@@ -72,7 +72,7 @@ def read_run(folder):
     reads, hits = of_class(stats, "reads", is_rt), of_class(stats, "hits", is_rt)
     return {
         "rays": rays,
-        "nodes a ray": nodes / rays,
+        "nodes per ray": nodes / rays,
         "most nodes of a ray": max(group["rt"]["max_ray_nodes"]["value"] for name, group in stats.items() if name.startswith("rt_unit")),
         "RT memory accesses": nodes + rt("headers") + rt("descriptors"),
         "RT writes": rt("hit_writes"),

@@ -90,7 +90,7 @@ def rt_unit():
     """Shows a ray's way through the RT unit."""
     d = Drawing(760, 350, "The RT unit: from rt.trace to the hit")
     d.box(20, 50, 118, 58, "core", "blue", "rt.trace of a warp")
-    d.frame(178, 22, 562, 244, "RT unit (one a core)")
+    d.frame(178, 22, 562, 244, "RT unit (one per core)")
     d.box(198, 50, 150, 58, "warp buffer", "box", "rt.warps slots of 32 rays")
     d.box(390, 50, 150, 58, "scheduler", "box", "rt.scheduler")
     d.box(580, 50, 142, 58, "request port", "box", "rt.coalescing")
@@ -124,7 +124,7 @@ def memory():
         d.arrow([(x + 52, 128), (x + 52, 156)])
         d.arrow([(x + 88, 158), (x + 88, 130)])
     d.text(394, 110, "...")
-    d.box(40, 158, 560, 36, "network: a port each way, bytes a cycle, latency", "box")
+    d.box(40, 158, 560, 36, "network: a port each way, bytes per cycle, latency", "box")
     for i, name in enumerate(("partition 0", "partition 1", "partition 3")):
         x = 40 + i * 180 + (60 if i == 2 else 0)
         d.arrow([(x + 52, 194), (x + 52, 220)])
