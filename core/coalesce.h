@@ -64,10 +64,10 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
                     LaneMask lanes, uint32_t bytes);
 
 // Fills in LineSectors::atomic of lines that coalesce_global() has made. A turn takes the lanes of a sector
-// in order, up to the first whose word it already has. An H200's times follow this rule (docs/validation.md).
-// Without `turns` each sector has one turn. Model: lanes of a reduction (not `returns`) that all meet in one
-// word count as one lane. An assembler adds them up before when it knows their addresses to be the same; here
-// it is enough that they are the same.
+// in order, up to the first lane whose word the turn already has. An H200's times follow this rule
+// (docs/validation.md). Without `turns` each sector has one turn. Model: lanes of a reduction (not `returns`)
+// that all meet in one word count as one lane. An assembler adds them up beforehand when it knows that their
+// addresses are the same; here equal addresses at run time are enough.
 void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,
                  bool turns, bool returns);
 

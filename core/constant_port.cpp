@@ -12,8 +12,8 @@ ConstantPort::ConstantPort(const CoreParts& core, ConstantCache* cache)
       loads_(core.warps.size()) {
 }
 
-// Starts a load. A load that misses waits in front of its warp, and has its result one hit latency after its
-// last line.
+// Starts a load. A load that misses keeps its warp from issuing, and has its result one hit latency after its
+// last line has come.
 void ConstantPort::start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   WarpSlot& at = core_.warps[slot];
   const isa::Access& access = at.warp.regs.access;

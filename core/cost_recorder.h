@@ -68,8 +68,8 @@ class CostRecorder final : public CoreObserver {
  private:
   struct Slot {
     uint32_t warp_index = 0;
-    // These are the lanes that came to an instruction, that have executed one, and that executed the last
-    // one.
+    // These are the lanes that came to an instruction, those that have executed one, and those that executed
+    // the last one.
     LaneMask present = 0, started = 0, last = 0;
     Cycle last_issue = 0;
     std::array<Cycle, kLanes> first{}, end{};

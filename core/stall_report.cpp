@@ -14,8 +14,8 @@
 namespace glint::core {
 namespace {
 
-// Says where the warp is, what it waits for, and for whom: the warps of its block, or whoever writes what it
-// has read last.
+// Says where the warp is, what it waits for, and who can end the wait: the warps of its block, or whoever
+// writes what it has read last.
 std::string describe_warp(const WarpSlot& slot, uint32_t accesses, const exec::World& world) {
   const exec::WarpContext& warp = slot.warp;
   const NextIssue next = slot.scheduler->next_of(slot.local);

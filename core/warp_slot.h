@@ -13,8 +13,8 @@
 
 namespace glint::core {
 
-// Holds all state that issuing an instruction touches, which is that of one slot. What a scheduler scans in
-// every cycle is in the scheduler instead, as arrays over its warps.
+// Holds the state of one slot that issuing an instruction touches. What a scheduler scans in every cycle is
+// in the scheduler instead, as arrays over its warps.
 struct WarpSlot {
   exec::WarpContext warp;
   Scoreboard scoreboard;

@@ -152,8 +152,8 @@ bool HitObjects::record(WarpContext& warp, int lane, HitObject& object) {
   return true;
 }
 
-// Reads or sets the time. Outside of any trace it is 0; only a program that lies about its stage reads it
-// there.
+// Reads or sets the time. Outside of any trace the time is 0; only a program that lies about its stage reads
+// it there.
 bool HitObjects::run_time(WarpContext& warp, const isa::Inst& inst, bool set) {
   if (set) {
     const uint32_t* const from = warp.regs.read(inst.operand[0]);

@@ -34,7 +34,8 @@ struct Shader {
   uint32_t local_bytes = 0;
   isa::SpecialSet specials_used;
   std::vector<isa::ParsedMessage> messages;  // messages of print and print.part, by number
-  // They say that the shader reads %payload or what follows it, and %object.origin or what follows it.
+  // They say whether the shader reads %payload or a special after it, and %object.origin or a special after
+  // it.
   bool uses_ray = false, uses_matrices = false;
 };
 

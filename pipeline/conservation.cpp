@@ -43,7 +43,7 @@ std::vector<Balance> of_core(const core::CoreCell& core, uint64_t cycles, uint32
   return std::move(ledger.rows);
 }
 
-// Returns the balances of the profile, if there is one: it adds up to what the core counts.
+// Returns the balances of the profile, if there is one: what it adds up to, and what the core counts.
 std::vector<Balance> of_profile(const core::CoreCell& core) {
   const core::CoreStats& s = core.stats();
   Ledger ledger(s.name() + " profile");

@@ -104,7 +104,8 @@ class BranchCleaner {
     } else if (first_code(choice.target) != first_code(block.back().target)) {
       return false;
     } else {
-      // Both branches lead to the same place, so the guarded one is removed.
+      // Both branches lead to the same place, so the guarded one is not needed. It goes to the end and is
+      // removed.
       std::swap(choice, block.back());
     }
     block.pop_back();

@@ -48,8 +48,8 @@ class Sweep {
     return is_constant(o) || definition(o) != nullptr ||
            (o.kind == Operand::Kind::Special && is_fixed(o.special));
   }
-  // Returns true when the operand has the same value at `inst` as at `source`: it is stable, or both are in
-  // one block and nothing between them writes it.
+  // Returns true when the operand has the same value at `inst` as at `source`. It does when it is stable, or
+  // when both instructions are in one block and nothing between them writes it.
   bool is_unchanged(const Operand& o, const VirtualInst& source, const VirtualInst& inst) const {
     if (is_stable(o)) return true;
     const VirtualInst* const first = block_->code.data();

@@ -144,9 +144,9 @@ class Spiller {
     return false;
   }
 
-  // Consecutive instructions with the same spilled guard share one reload. This does not only save loads: a
-  // temporary that is written and read under one guard is dead before it only if that guard has one name
-  // (LiveWalk).
+  // Consecutive instructions with the same spilled guard share one reload. This saves loads, and it keeps the
+  // guard's name the same: only then does LiveWalk see that a temporary which is written and read under one
+  // guard is dead before it is written.
   void reload_guard(VirtualInst& inst) {
     if (!home_of(inst.guard)) {
       guard_ = {};

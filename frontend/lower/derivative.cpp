@@ -21,8 +21,8 @@ bool asks_for(ModuleLowering& l, spv::Capability wanted) {
   return std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first == wanted; });
 }
 
-// Returns the distance in lanes between vertical neighbours of a quad. It is empty, and reported as
-// unsupported, where they are not in one warp.
+// Returns the distance in lanes between vertical neighbours of a quad. Where they are not in one warp, it
+// returns nothing and reports the module as unsupported.
 std::optional<uint32_t> row_distance(ModuleLowering& l) {
   if (asks_for(l, spv::Capability::ComputeDerivativeGroupLinearNV))
     return 2;  // a quad is four consecutive threads

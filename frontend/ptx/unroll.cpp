@@ -198,7 +198,7 @@ class CountedLoop {
       if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) ||
           definitions_.contains(other.reg))
         continue;
-      // Both turns must read the register before its step, or both after it.
+      // The first turn and this turn must both read the register before its step, or both after it.
       const int64_t behind = stepped_.contains(moving.reg) && stepped_.at(moving.reg) > turn;
       if (behind != int64_t{is_behind(i, moving.reg)}) return false;
       inst.operands = {inst.operands[0], first_.at(i), constant_of(turn * steps_.at(moving.reg), wide)};
@@ -257,7 +257,7 @@ class CountedLoop {
 
   // Appends copies of the body. Model: each copy is a block of its own, so that loads stay in their turn. An
   // H200 waits for memory once in each of the four turns (k_matmul, docs/validation.md), not once for all of
-  // them. Returns the first copy. The last copy goes to `next`, or to the block after it.
+  // them. Returns the first copy. The last copy goes to `next`, or to the block that follows it.
   BlockId add_turns(int64_t turns, BlockId next = kNoBlock) {
     stepped_.clear(), names_.clear(), first_.clear();
     const auto body = BlockId(draft_.blocks.size());
@@ -269,8 +269,8 @@ class CountedLoop {
     return body;
   }
 
-  // Puts the copies before the loop, with tests around them: fours, then two, then the loop itself. The first
-  // turn runs whatever the counter is.
+  // Puts the copies before the loop, with tests around them: first copies of four turns, then of two, then
+  // the loop itself. The first turn runs whatever the counter is.
   void append() {
     first_block_ = BlockId(draft_.blocks.size());
     const BlockId entry = add_block({}, first_block_ + 1);

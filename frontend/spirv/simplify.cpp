@@ -135,8 +135,8 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
                                 std::string* messages) {
   const std::vector<uint32_t> input = with_plain_lines(with_known_prints(spirv));
   if (const std::optional<std::vector<uint32_t>> marked = with_inline_scopes(input)) {
-    // The first pass strips foreign sets and would strip the marks, too. It is not needed for a marked
-    // module, which has no other such sets.
+    // The first pass strips foreign sets, so it would strip the marks. A marked module does not need it,
+    // because it has no other such sets.
     std::string of_marks;
     std::vector<uint32_t> output = valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, &of_marks);
     if (!output.empty()) return output;

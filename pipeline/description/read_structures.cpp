@@ -16,8 +16,8 @@ namespace {
 
 using Matrix = std::array<float, 12>;
 
-// Reads `transform` (12 numbers, row after row). Without it, applies scale, then rotation in degrees about x,
-// y and z in turn, then translation.
+// Reads `transform` (12 numbers, row after row). Without that key, it applies scale, then rotation in degrees
+// about x, y and z in turn, then translation.
 Matrix read_transform(Reading& r, TableReader& t) {
   Matrix out = rt::kIdentity;
   const std::vector<double> rows = t.numbers("transform"), moved = t.numbers("translate"),

@@ -90,8 +90,8 @@ void RayModel::advance() {
   if (num_wanting_ && port_free_ <= double(now)) send(now);
 }
 
-// Sends one node of the oldest warp that wants any, for all its lanes that want it. While the L1 takes
-// shaders' accesses, more lanes come to want the node.
+// Takes the oldest warp that wants a node, and sends one node for all of its lanes that want it. While the L1
+// takes shaders' accesses, more lanes come to want the node.
 void RayModel::send(Cycle now) {
   if (const Cycle free = caches_.port_free(core_, now); free > now) {
     port_free_ = double(free);

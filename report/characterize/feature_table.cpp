@@ -18,7 +18,7 @@ namespace glint::report {
 namespace {
 
 constexpr Eigen::Index kFewestWorkloads = 3, kFewestMetrics = 2;
-// These columns say which run it was (metrics_header()), not how it behaved.
+// These columns say which run it was (metrics_header()) and not how it behaved.
 constexpr std::string_view kIdentity[] = {"scene",    "form",  "shader", "config", "config_hash",
                                           "fraction", "width", "height", "samples"};
 constexpr std::string_view kHostSpeed = "sim_rate";

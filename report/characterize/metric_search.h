@@ -38,7 +38,7 @@ struct SearchSettings {
 struct ChosenMetrics {
   struct Metric {
     int column = 0;
-    double fitness_without = 0;  // fitness of the others alone, which shows the worth of this one
+    double fitness_without = 0;  // fitness of the set without this metric, which shows its worth
   };
   std::vector<Metric> metrics;  // ordered by worth, the greatest first
   double fitness = 0;

@@ -18,9 +18,9 @@ std::vector<ProfileRow> by_line(const ProfileTable& profile);
 // a warp. The first column tells them apart.
 std::string profile_csv(const ProfileTable& profile);
 
-// Returns profile.folded: "stage;main;file:line;function;file:line;reason cycles", a line for each that is
-// not zero. Flame graph tools read this form. Calls are those that the compiler kept or, when it kept none,
-// those of CallTree. Without `text_of`, or when it knows no text, the line stands alone.
+// Returns profile.folded, which has a line "stage;main;file:line;function;file:line;reason cycles" for each
+// number that is not zero. Flame graph tools read this form. The calls are those that the compiler kept. When
+// it kept none, CallTree finds them. Without `text_of`, or when it knows no text, the line stands alone.
 std::string profile_folded(
     const ProfileTable& profile,
     const CallTree::TextOf& text_of = [](const std::string&) { return std::nullopt; });

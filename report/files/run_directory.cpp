@@ -36,7 +36,8 @@ bool put(const std::string& path, const std::string& bytes) {
   return bool(out);
 }
 
-// Returns what the run of that run.json has saved: names in its folder, whatever the file says.
+// Returns what the run of that run.json has saved. It returns only names in the run's folder, whatever the
+// file says.
 std::vector<std::string> saved_before(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);

@@ -66,7 +66,8 @@ class Columns {
  public:
   explicit Columns(size_t num_runs) : num_runs_(num_runs) {}
 
-  // Adds the values of a run. Names that the first runs lack come behind those that they follow in their run.
+  // Adds the values of a run. A name that the first runs lack comes behind the name that it follows in its
+  // own run.
   void add(size_t run, const Json& values) {
     auto next = names_.begin();
     for (const auto& [name, value] : values.items()) {

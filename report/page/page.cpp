@@ -224,7 +224,7 @@ std::string pictures(const Json& data) {
   return out;
 }
 
-// Returns the packed script under its notices, which stay readable, and the script that unpacks it.
+// Returns the packed script below its notices, which stay readable, and then the script that unpacks it.
 std::string script_of(const PageParts& parts) {
   const size_t end = parts.script.starts_with("/*!") ? parts.script.find("*/") + 2 : 0;
   return fmt::format("<script>\n{}\n</script>\n{}\n<script>\n{}</script>", parts.script.substr(0, end),

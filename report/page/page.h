@@ -1,4 +1,4 @@
-// Writes the HTML report: one page that holds its data, its script, and tables that read without it.
+// Writes the HTML report: one page that holds its data, its script, and tables for readers without script.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>

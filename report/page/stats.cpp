@@ -1,4 +1,4 @@
-// Turns the tree of statistics by ninety degrees.
+// Lays statistics out by path, with the instances of a unit side by side.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/page/stats.h"
 

@@ -17,9 +17,9 @@ struct Picture {
 // neither.
 Picture read_picture(const std::string& path);
 
-// Returns whether there is no distance between two pixels. Values are the same when they are equal, both not
-// a number, or the same infinity. A pixel is beyond measure when the values of a channel are not the same and
-// one of them is not finite. `pixel` counts row by row from the top.
+// Returns whether there is no distance between two pixels. Two values are the same when they are equal, when
+// both are not a number, or when both are the same infinity. A pixel is beyond measure when the values of a
+// channel are not the same and one of them is not finite. `pixel` counts row by row from the top.
 bool is_beyond_measure(const Picture& a, const Picture& b, size_t pixel);
 
 struct ImageDifference {

@@ -19,7 +19,7 @@ struct Process {
   enum class State { Waiting, Running, Done, Failed, Stopped } state = State::Waiting;
   std::string phase = "starting";  // the last phase that the process told
   double progress = 0;             // progress of the phase, 0 to 1
-  double seconds = 0;              // seconds since its start, or those that it took
+  double seconds = 0;              // seconds since its start, or seconds that it took once it has ended
   uint64_t peak_bytes = 0;         // resident memory, known once it has ended
   std::string end;                 // how it ended when it did not end well: "exit 4", "signal 9"
 };

@@ -22,8 +22,9 @@ namespace {
 
 constexpr const char* kDefaultPreset = "mobile";  // the default of --config
 
-// Returns the preset of Glint to compare a run's configuration with: the one that it names, else one that is
-// the same, else the default. A user's file is never read again, because it may have changed since the run.
+// Returns the preset of Glint to compare a run's configuration with. It is the preset that the run names,
+// else one with the same values, else the default. A user's file is never read again, because it may have
+// changed since the run.
 std::string preset_of(const Resources& resources, const report::RunRecord& facts) {
   const std::vector<std::string> presets = resources.config_names();
   if (const std::string name = facts.text("config.name");

@@ -54,8 +54,8 @@ class Command {
   template <class T>
   Option add_option(const std::string& names, T& variable, const std::string& doc);
   Option add_flag(const std::string& names, bool& variable, const std::string& doc);
-  // Adds an option whose text is read by `read`, which returns what is wrong with the text, or "" when it
-  // took it.
+  // Adds an option whose text `read` takes. `read` returns what is wrong with the text, or "" when nothing
+  // is.
   Option add_parsed_option(const std::string& names, std::function<std::string(const std::string&)> read,
                            const std::string& doc);
   // Sets the function that is called when the command line has been parsed and this command was chosen.
