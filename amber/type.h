@@ -31,7 +31,7 @@ struct Type {
   Scalar scalar = Scalar::I32;
   uint32_t rows = 1, columns = 1;
   bool is_packed = false;  // of a format: three channels have no room for a fourth
-  // The format of texels. It is set for formats, and for scalars and vectors that equal one.
+  // This is the format of texels. It is set for formats, and for scalars and vectors that equal one.
   std::optional<exec::TexelFormat> format;
   std::string name;
   std::vector<Member> members;

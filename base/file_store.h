@@ -15,17 +15,18 @@ namespace glint {
 // of earlier bytes.
 uint64_t content_hash(std::string_view bytes, uint64_t seed = 0xcbf2'9ce4'8422'2325);
 
-// A folder of values. Any number of processes may use one folder at a time, because a file appears whole, by
-// renaming. A file that is damaged, or that belongs to another key with the same hash, counts as absent and
-// is written again. A value that cannot be written causes no error, only more work next time. Only one thread
-// at a time may use a FileStore.
+// Keeps values in a folder. Any number of processes may use one folder at a time, because a file appears
+// whole, by renaming. A file that is damaged, or that belongs to another key with the same hash, counts as
+// absent and is written again. A value that cannot be written causes no error, only more work next time. Only
+// one thread at a time may use a FileStore.
 class FileStore {
  public:
   struct Options {
     std::string folder;  // made at the first store; empty: nothing is kept
     std::string ending;  // file name extension, such as ".shader"
     std::string build;   // build of the program that makes the values; values of other builds are not found
-    // Limit for all files of the folder with this ending. Above it, the files that were read longest ago go.
+    // This limits the size of all files of the folder with this ending. Above it, the files that were read
+    // longest ago are removed.
     uint64_t max_bytes = 0;
   };
   explicit FileStore(Options options) : options_(std::move(options)) {}

@@ -24,8 +24,8 @@ InstructionFetch::InstructionFetch(const FetchParams& params, uint32_t scheduler
   }
 }
 
-// Returns the most lines that may be in flight. A stream that is given up leaves its lines on the way: at
-// most as many again for each warp that gives one up.
+// Returns the most lines that may be in flight: one for each warp, those of the present stream, and as many
+// of streams that were given up.
 uint32_t InstructionFetch::most_in_flight(uint32_t schedulers) {
   return schedulers * (kMaxWarps + 2 * kMaxPrefetch);
 }

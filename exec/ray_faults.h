@@ -19,7 +19,7 @@ class RayFaults {
   bool let_pass_record(const WarpContext& warp, int lane, std::string_view region, uint32_t record,
                        size_t records, const std::string& how = {});
   bool let_pass_hit_record(const WarpContext& warp, int lane, const rt::Ray& ray, const rt::Hit& hit);
-  // Reports a ray that is traced into something that is not a structure, which it misses.
+  // Reports a ray that is traced into something that is not a structure. The ray misses.
   bool let_pass_structure(const WarpContext& warp, int lane, std::string_view verb, Address structure);
   // Reports a ray that has missed because its structure's bytes led outside of memory.
   bool let_pass_broken(const WarpContext& warp, int lane, rt::RayState& state);

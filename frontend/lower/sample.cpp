@@ -155,8 +155,8 @@ Operands gather_at(ModuleLowering& l, const Sample& s, uint32_t component,
   return four_words(l, name, sources);
 }
 
-// Lowers a gather of four texels. With four offsets it takes one texel for each offset, (i0, j0), which is
-// the last of four.
+// Lowers a gather of four texels. With four offsets, it gathers once for each offset and takes the texel (i0,
+// j0), which is the last of the four.
 void gather(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const auto s = sample_of(l, inst, 3);
   if (!s) return;

@@ -33,7 +33,8 @@ inline double with_nan(double result, double strongest, double strong, double we
   return with_nan(result, strongest, is_nan(strong) ? strong : weak);
 }
 
-// These give a NaN result the NaN of that source, if it has one, then of the third source, then of the other.
+// Both say which source's NaN a NaN result takes: first that of the named source, then that of the third
+// source if there is one, then that of the other.
 struct FirstNanWins {
   double operator()(double result, double a) const { return with_nan(result, a); }
   double operator()(double result, double a, double b) const { return with_nan(result, a, b); }

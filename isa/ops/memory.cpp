@@ -16,7 +16,7 @@ struct Shape {
   uint8_t bytes, count;
   bool sign_extend;
   OperandKind load;
-  // The operand of a store. None means that the type has only loads, because stores use the untyped bits.
+  // This is the operand of a store. With None, the type has only loads, because stores use the untyped bits.
   OperandKind store;
 };
 constexpr Shape kShapes[] = {

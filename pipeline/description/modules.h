@@ -1,4 +1,4 @@
-// Compiles the shaders of a description: programs, what each asks for, and where in its text.
+// Compiles the shaders of a description, and finds what each of them asks for and where in its text.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>

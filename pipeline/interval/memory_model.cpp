@@ -50,7 +50,8 @@ MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double c
     channels_.push_back({std::vector<Bank>(params.dram.banks), {}});
 }
 
-// Returns the line, and makes it when it is absent. What it displaces goes down when that is newer.
+// Returns the line, and makes it when it is absent. A line that it displaces is written to the level below if
+// it is dirty.
 mem::TagArray::Line& MemoryModel::line_of(Core& core, Address line, Cycle at) {
   mem::TagArray& tags = core.l1.tags;
   if (const uint32_t slot = tags.find(line); slot != mem::TagArray::kNone) {

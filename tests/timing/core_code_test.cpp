@@ -95,7 +95,7 @@ TEST_CASE("warps of all schedulers share the cache behind their own") {
   const Cycle cycles = core.run();
 
   CHECK(core.l1.log().size() == 1);
-  CHECK(cycles == 30 + 2 * 4);  // a line on its way comes to all four at once; two warps a scheduler
+  CHECK(cycles == 30 + 2 * 4);  // A line on its way comes to all four at once; two warps per scheduler.
 }
 
 TEST_CASE("a constant that is not there comes with its line, and then takes its time") {

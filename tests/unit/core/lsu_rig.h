@@ -1,4 +1,4 @@
-// Runs a load and store unit until it is idle.
+// Runs a load-store unit until it is idle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
