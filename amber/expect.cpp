@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
+#include <iterator>
 #include <utility>
 
 namespace glint::amber {
@@ -26,6 +27,7 @@ bool is_near(double found, double expected, double tolerance, bool is_percent) {
 
 const char* sign_of(Comparator comparator) {
   constexpr const char* kSigns[] = {"==", "!=", "<", "<=", ">", ">="};
+  static_assert(std::size(kSigns) == size_t(Comparator::Rgb));
   return kSigns[size_t(comparator)];
 }
 

@@ -10,20 +10,12 @@ namespace glint::core {
 using isa::Effect;
 using isa::Space;
 
-namespace {
-
-bool is_surface(Effect effect) {
-  return effect == Effect::SurfaceLoad || effect == Effect::SurfaceStore || effect == Effect::SurfaceAtomic;
-}
-
-}  // namespace
-
 void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp,
                           const exec::Issued& issued) const {
   if (issued.row->effect == Effect::Texture) {
     access.traffic = mem::Traffic::ShaderTexture;
     collect_texels(access, issued.lanes);
-  } else if (is_surface(issued.row->effect)) {
+  } else if (isa::effect_row(issued.row->effect).family == isa::EffectFamily::Image) {
     access.traffic = mem::Traffic::ShaderSurface;
     collect_texels(access, issued.lanes);
   } else if (isa::is_shader_call(issued.row->effect)) {

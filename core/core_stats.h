@@ -14,7 +14,7 @@
 
 namespace glint::core {
 
-inline constexpr int kNumStages = int(isa::Stage::Compute) + 1;
+using isa::kNumStages;
 
 // Counts the instructions of one shader stage, by class. Each instruction belongs to the stage whose code it
 // is in: a call counts for its caller, and what the callee executes counts for the callee.

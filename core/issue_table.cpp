@@ -3,7 +3,6 @@
 #include "core/issue_table.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "base/check.h"
 #include "isa/barrier.h"
@@ -40,55 +39,12 @@ void add_operands(std::vector<uint16_t>& out, const isa::OpRow& row, const isa::
 }
 
 Finish finish_of(const isa::OpRow& row) {
-  switch (row.effect) {
-    case Effect::Load:
-    case Effect::Store:
-    case Effect::Atomic:
-      return row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param ? Finish::Fixed
-                                                                                            : Finish::Memory;
-    case Effect::Texture:
-    case Effect::SurfaceLoad:
-    case Effect::SurfaceStore:
-    case Effect::SurfaceAtomic:
-      return Finish::Memory;
-    case Effect::Trace:
-    case Effect::QueryProceed:
-    case Effect::Resume:
-      return Finish::Rays;
-    case Effect::CallCandidate:
-    case Effect::CallAnyHit:
-    case Effect::CallCallable:
-    case Effect::CallHit:
-      return Finish::CallRecord;
-    case Effect::Branch:
-    case Effect::Join:
-    case Effect::Exit:
-    case Effect::Return:
-    case Effect::BranchIndexed:
-    case Effect::Call:
-    case Effect::Trap:
-    case Effect::Ignore:
-    case Effect::Terminate:
-      return Finish::Control;
-    case Effect::Barrier:
-      return Finish::Barrier;
-    // Lanes of a warp see each other's accesses in order without a fence.
-    case Effect::Fence:
-      return isa::FenceScope(row.detail) == isa::FenceScope::Warp ? Finish::Control : Finish::Fence;
-    // ssy only names the place where lanes meet again, and the warp goes on with the next instruction.
-    case Effect::PushReconvergence:
-    case Effect::None:
-    case Effect::ImageQuery:
-    case Effect::Query:
-    case Effect::Report:
-    case Effect::HitObject:
-    case Effect::Accepted:
-    case Effect::Print:
-    case Effect::PrintPart:
-    case Effect::EndTrace:
-      return Finish::Fixed;
-  }
-  GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);
+  const Finish finish = isa::effect_row(row.effect).finish;
+  if (row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param) return Finish::Fixed;
+  // Lanes of a warp see each other's accesses in order without a fence.
+  const bool orders_warp =
+      row.effect == Effect::Fence && isa::FenceScope(row.detail) == isa::FenceScope::Warp;
+  return orders_warp ? Finish::Control : finish;
 }
 
 uint16_t fence_latency(const isa::OpRow& row, const FenceParams& params) {
@@ -113,13 +69,6 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
   if (finish == Finish::CallRecord) return Stall::Call;
   if (row.unit == Unit::Const) return Stall::Const;
   return pipe_of(row.unit) == Pipe::Sfu ? Stall::RawSfu : Stall::RawFixed;
-}
-
-AtomicKind kind_of_atomic(std::string_view name) {
-  if (name.find(".cas.") != std::string_view::npos) return AtomicKind::Swap;
-  return name.find(".add.f") != std::string_view::npos || name.find(".add.rn.f") != std::string_view::npos
-             ? AtomicKind::FloatAdd
-             : AtomicKind::Integer;
 }
 
 void take_time(IssueRow& row, const OpTime& time) {
@@ -193,7 +142,7 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     const OpTime* time = row.finish == Finish::Fixed ? op_times->find(op.name) : nullptr;
     if (time) take_time(row, *time);
     issues_.push_back(uint8_t(time ? time->issues : 1));
-    if (op.effect == Effect::Atomic) row.atomic = kind_of_atomic(op.name);
+    if (op.effect == Effect::Atomic) row.atomic = isa::AtomicKind(op.detail);
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
     rows_.push_back(row);
     if (params.register_file.banks) count_bank_reads(row, params.register_file);

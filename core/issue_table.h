@@ -10,6 +10,7 @@
 #include "core/params.h"
 #include "core/stall.h"
 #include "exec/image.h"
+#include "isa/atomic.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
@@ -21,16 +22,7 @@ enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory,
 inline constexpr int kNumPipes = int(Pipe::Count);
 Pipe pipe_of(isa::Unit unit);
 
-// Says what ends an instruction.
-enum class Finish : uint8_t {
-  Fixed,       // `latency` cycles have passed since issue
-  Memory,      // the L1 has answered
-  Rays,        // the RT unit has answered
-  Control,     // a fixed time has passed, in which the warp does not issue
-  CallRecord,  // what ends Control, and then the read of the record of the binding table
-  Barrier,     // the other warps have come; a bar.arrive ends as Control does
-  Fence,       // the warp's earlier accesses are done, and then `latency` cycles have passed
-};
+using isa::Finish;  // the fixed times of an instruction are IssueRow::latency
 
 struct IssueRow {
   // This is the index into IssueTable's list of registers that have to be ready, the destinations last.
@@ -47,7 +39,7 @@ struct IssueRow {
   bool alternates : 1 = false;      // OpTime::alternates
   bool is_texture : 1 = false;      // goes through the texture unit
   bool is_sequence : 1 = false;     // IssueTable::issues() is more than 1
-  AtomicKind atomic : 2 = AtomicKind::Integer;
+  isa::AtomicKind atomic : 2 = isa::AtomicKind::Integer;
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle
 };

@@ -124,8 +124,8 @@ Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
 // accesses.
 Cycle Lsu::shared_latency(const MemoryAccess& access) const {
   if (!access.atomic) return shared_.latency + conflict_latency(access.passes - 1);
-  const AtomicParams& own = access.atomic_kind == AtomicKind::Swap ? shared_.swap : shared_.float_add;
-  const bool is_own = access.atomic_kind != AtomicKind::Integer && own.latency > 0;
+  const AtomicParams& own = access.atomic_kind == isa::AtomicKind::Swap ? shared_.swap : shared_.float_add;
+  const bool is_own = access.atomic_kind != isa::AtomicKind::Integer && own.latency > 0;
   const AtomicParams times =
       is_own ? own : AtomicParams{shared_.atomic_latency, shared_.atomic_pass, shared_.atomic_hidden};
   return times.latency + std::max((access.passes - 1) * times.pass, times.hidden) - times.hidden;

@@ -28,7 +28,7 @@ bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issue
   access.slot = slot;
   access.pc = issued.pc;
   if (core_.executor.is_late()) access.late_until = turn_end(now);
-  access.write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
+  access.write = isa::only_writes_memory(issued.row->effect);
   // Nobody waits for the answer of a red.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
   access.atomic_kind = row.atomic;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -25,6 +26,7 @@ uint32_t occupancy(const Params& params, uint32_t num_registers) {
 
 std::string_view name_of(Residency::Limit limit) {
   constexpr std::string_view kNames[] = {"warps", "registers", "blocks", "shared memory"};
+  static_assert(std::size(kNames) == size_t(Residency::Limit::SharedMemory) + 1);
   return kNames[size_t(limit)];
 }
 

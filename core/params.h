@@ -177,9 +177,6 @@ struct RegisterFileParams {
   }
 };
 
-// Names the kinds of atomics that take different times in shared memory.
-enum class AtomicKind : uint8_t { Integer, Swap, FloatAdd };
-
 // Holds the times of atomics that differ from those of an integer addition.
 struct AtomicParams {
   uint32_t latency = 0, pass = 0, hidden = 0;

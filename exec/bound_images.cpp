@@ -3,6 +3,7 @@
 #include "exec/bound_images.h"
 
 #include <fmt/format.h>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,7 @@ bool fits(const isa::ImageAccess& op, ImageShape image) {
 
 std::string_view name_of(ImageShape shape) {
   constexpr std::string_view kNames[] = {"buffer", "1d", "2d", "3d", "a1d", "a2d", "cube", "acube"};
+  static_assert(std::size(kNames) == size_t(ImageShape::Acube) + 1);
   return kNames[size_t(shape)];
 }
 

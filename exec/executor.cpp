@@ -13,6 +13,7 @@
 namespace glint::exec {
 
 using isa::Effect;
+using isa::EffectFamily;
 
 Executor::Executor(const World& world, double clock_mhz)
     : world_(world),
@@ -76,56 +77,30 @@ Issued Executor::execute(WarpContext& warp, Cycle now) {
 }
 
 bool Executor::dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  switch (row.effect) {
-    case Effect::None:
+  if (isa::needs_trace(row.effect) && !is_in_trace(warp, row)) return false;
+  switch (isa::effect_row(row.effect).family) {
+    case EffectFamily::None:
       break;
-    case Effect::Load:
-    case Effect::Store:
-    case Effect::Atomic:
+    case EffectFamily::Memory:
       return memory_.run(warp, inst, row);
-    case Effect::Texture:
-    case Effect::SurfaceLoad:
-    case Effect::SurfaceStore:
-    case Effect::SurfaceAtomic:
-    case Effect::ImageQuery:
+    case EffectFamily::Image:
       return images_.run(warp, inst, row);
-    case Effect::Branch:
-    case Effect::PushReconvergence:
-    case Effect::Join:
-    case Effect::Exit:
-    case Effect::Return:
-    case Effect::BranchIndexed:
-    case Effect::Call:
-    case Effect::Trap:
-    case Effect::Fence:
-    case Effect::Ignore:
-    case Effect::Terminate:
+    case EffectFamily::Control:
       return control_.run(warp, inst, row);
-    case Effect::Print:
-    case Effect::PrintPart:
-      run_print(world_, warp, inst, row);
-      return true;
-    case Effect::Barrier:
-      return barriers_.run(warp, inst, row);
-    case Effect::HitObject:
-      return hit_objects_.run(warp, inst, row);
-    case Effect::Query:
-    case Effect::QueryProceed:
-      return queries_.run(warp, inst, row);
-    case Effect::CallCandidate:
-    case Effect::CallAnyHit:
-    case Effect::CallHit:
-      return is_in_trace(warp, row) && calls_.call(warp, row.effect);
-    case Effect::CallCallable:
-      return calls_.call_callable(warp, inst);
-    case Effect::Trace:
+    case EffectFamily::ShaderCall:
+      return calls_.run(warp, inst, row);
+    case EffectFamily::Trace:
       return isa::TraceKind(row.detail) == isa::TraceKind::Ray ? rays_.run(warp, inst, row)
                                                                : hit_objects_.begin_trace(warp, inst);
-    case Effect::Resume:
-    case Effect::Report:
-    case Effect::Accepted:
-    case Effect::EndTrace:
-      return is_in_trace(warp, row) && rays_.run(warp, inst, row);
+    case EffectFamily::Query:
+      return queries_.run(warp, inst, row);
+    case EffectFamily::HitObject:
+      return hit_objects_.run(warp, inst, row);
+    case EffectFamily::Barrier:
+      return barriers_.run(warp, inst, row);
+    case EffectFamily::Print:
+      run_print(world_, warp, inst, row);
+      return true;
   }
   GLINT_PANIC("effect {} of '{}'", int(row.effect), row.name);
 }

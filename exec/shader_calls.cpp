@@ -16,6 +16,11 @@ namespace glint::exec {
 using isa::Effect;
 using rt::RayStatus;
 
+bool ShaderCalls::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  return row.effect == Effect::CallCallable ? call_callable(warp, inst) : call(warp, row.effect);
+}
+
+// Calls the shaders that the lanes' rays ask for.
 bool ShaderCalls::call(WarpContext& warp, Effect effect) {
   std::array<uint32_t, kLanes> target;
   if (!call_targets(warp, effect, target)) return false;
@@ -30,6 +35,7 @@ bool ShaderCalls::call(WarpContext& warp, Effect effect) {
   return true;
 }
 
+// Calls the callable shaders that the lanes' indices name.
 bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
   if (warp.callables == world_.max_callable_depth)
     return faults_.fail(warp, std::countr_zero(warp.regs.exec),

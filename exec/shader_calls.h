@@ -24,9 +24,8 @@ class ShaderCalls {
               CandidateCounts& counts)
       : world_(world), faults_(faults), ray_faults_(ray_faults), called_(called), counts_(counts) {}
 
-  // Calls the shaders that the lanes' rays ask for. Returns false after a fault.
-  bool call(WarpContext& warp, isa::Effect effect);
-  bool call_callable(WarpContext& warp, const isa::Inst& inst);
+  // Calls the shaders that the lanes' rays or their indices ask for. Returns false after a fault.
+  bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   // Ends the shader of the lanes with `effect`, and decides what their stage has to decide.
   void finish_shader(WarpContext& warp, isa::Effect effect);
 
@@ -35,6 +34,8 @@ class ShaderCalls {
   void count_called(isa::Stage stage, uint64_t lanes) { called_lanes_[size_t(stage)] += lanes; }
 
  private:
+  bool call(WarpContext& warp, isa::Effect effect);
+  bool call_callable(WarpContext& warp, const isa::Inst& inst);
   // Fills `target` with the shader of each calling lane, or kNoShader for a null shader, which is decided
   // here at once.
   bool call_targets(WarpContext& warp, isa::Effect effect, std::array<uint32_t, kLanes>& target);
@@ -48,7 +49,7 @@ class ShaderCalls {
   RayFaults& ray_faults_;
   const Probe<Called>& called_;
   CandidateCounts& counts_;
-  std::array<uint64_t, size_t(isa::Stage::Compute) + 1> called_lanes_{};
+  std::array<uint64_t, size_t(isa::kNumStages)> called_lanes_{};
 };
 
 }  // namespace glint::exec

@@ -3,6 +3,8 @@
 #pragma once
 #include <cstdint>
 
+#include "isa/stage.h"
+
 namespace glint::isa {
 
 // Names the op of a row of the family, in OpRow::detail.
@@ -18,6 +20,13 @@ enum class HitObjectOp : uint16_t {
   GetTime,
   Corner
 };
+
+// Returns the stages whose shaders may contain the op.
+constexpr StageSet stages_of(HitObjectOp op) {
+  if (op == HitObjectOp::GetTime) return {Stage::Intersection, Stage::AnyHit, Stage::ClosestHit, Stage::Miss};
+  if (op == HitObjectOp::Corner) return {Stage::AnyHit, Stage::ClosestHit};
+  return {Stage::RayGeneration, Stage::ClosestHit, Stage::Miss};
+}
 
 // Numbers the getters of SPV_NV_shader_invocation_reorder. The number is the last operand of ho.value.
 enum class HitObjectValue : uint32_t {

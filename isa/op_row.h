@@ -4,11 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <span>
 #include <string_view>
 
+#include "isa/effects.h"
 #include "isa/image_access.h"
 #include "isa/inst.h"
+#include "isa/units.h"
 #include "isa/warp.h"
 
 namespace glint::isa {
@@ -17,36 +20,8 @@ namespace glint::isa {
 enum class Class : uint8_t { Alu, Sfu, Mem, Tex, Ctrl, Rt, Count };
 constexpr std::string_view name_of(Class c) {
   constexpr std::string_view kNames[] = {"alu", "sfu", "mem", "tex", "ctrl", "rt"};
+  static_assert(std::size(kNames) == size_t(Class::Count));
   return kNames[size_t(c)];
-}
-
-// Names the execution units. Latency and initiation interval come from the configuration,
-// `[core.units.<name>]`. FpDiv and IntDiv are multi-pass sequences that the hardware runs on the named pipe.
-enum class Unit : uint8_t {
-  Int,
-  IntDiv,
-  Fp32,
-  FpDiv,
-  Fp64,
-  Fp64Div,
-  Fp16,
-  Sfu,
-  Move,
-  Predicate,
-  Shuffle,  // ops whose lanes read each other: shfl, vote, match, redux
-  Lsu,
-  Const,
-  Tex,
-  Branch,
-  Barrier,  // bar.*, membar.*
-  RtUnit,
-  Count
-};
-constexpr std::string_view name_of(Unit u) {
-  constexpr std::string_view kNames[] = {"int",   "int_div", "fp32",   "fp_div",    "fp64",    "fp64_div",
-                                         "fp16",  "sfu",     "move",   "predicate", "shuffle", "lsu",
-                                         "const", "tex",     "branch", "barrier",   "rt_unit"};
-  return kNames[size_t(u)];
 }
 
 // Names the kinds of operands, in the order in which the text writes them. Each takes one slot unless noted.
@@ -108,57 +83,6 @@ struct Operands {
   constexpr std::span<const OperandKind> view() const { return {kind.data(), count}; }
 };
 
-// Names what the machine must do after the handler ran. None means that the handler did everything.
-enum class Effect : uint8_t {
-  None,
-  // OpRow::memory describes Load, Store and Atomic. Their addresses are in Warp::access.
-  Load,
-  Store,
-  Atomic,
-  // OpRow::image describes Texture, SurfaceLoad and SurfaceStore. access.address is the handle.
-  Texture,
-  SurfaceLoad,
-  SurfaceStore,
-  SurfaceAtomic,      // read-modify-write of a texel by OpRow::atomic
-  ImageQuery,         // asks for properties of the image; accesses no memory
-  Branch,             // to Inst::imm, for the lanes of exec
-  BranchIndexed,      // brx.idx: to Inst::imm + operand 0, in a table of branches
-  Call,               // to the function at Inst::imm; `ret` comes back
-  PushReconvergence,  // ssy: lanes will meet at Inst::imm
-  Join,               // lanes wait for the others of the innermost ssy that names this place
-  Exit,               // lanes end
-  Return,             // lanes return from a function or a shader call
-  Trap,               // raises a fault
-  // The ops call.sbt.* call shaders indirectly through the binding table.
-  CallCandidate,
-  CallAnyHit,
-  CallHit,
-  CallCallable,
-  // rt.trace and rt.resume give rays to the RT unit. The answer goes to the predicate of operand slot 0.
-  Trace,
-  Resume,
-  Report,        // rt.report
-  Accepted,      // rt.accepted
-  Ignore,        // rt.ignore
-  Terminate,     // rt.terminate
-  EndTrace,      // rt.end
-  Query,         // rq.*: OpRow::detail says which (isa/ray_query.h)
-  QueryProceed,  // rq.proceed: gives rays to the RT unit
-  HitObject,     // ho.*: OpRow::detail says which (isa/hit_object.h)
-  Barrier,       // bar.*: warps of a block wait for each other
-  // print and print.part print a message of Program::messages with its words.
-  Print,
-  PrintPart,
-  Fence,  // membar, fence, bar.warp.sync: orders memory accesses of the warp
-};
-
-// Returns true for effects that run other shaders, which use all registers and predicates except %r0
-// (docs/abi.md).
-constexpr bool is_shader_call(Effect e) {
-  return e == Effect::CallCandidate || e == Effect::CallAnyHit || e == Effect::CallHit ||
-         e == Effect::CallCallable;
-}
-
 // Names the state spaces. Generic is a 64-bit address whose window says whether it is global, shared or local
 // (isa/generic_address.h). Param holds the parameters of a kernel, which lie in the constant bank at
 // kPushConstantOffset (isa/program.h).
@@ -212,9 +136,10 @@ struct OpRow {
   AtomicFunction atomic = nullptr;  // of Effect::Atomic and SurfaceAtomic
   // Says which op of its family a row is, where one effect or one handler serves many rows (isa/ray_query.h).
   uint16_t detail = 0;
-  Handler run = nullptr;  // never null; an op that is only an effect has an empty handler
-  std::string_view doc;   // one sentence, for docs/isa.md and `glint isa add.s32`
-  Examples examples;      // examples are documentation and test at once
+  std::string_view reduction;  // of an atomic: the op that does the same and does not give the old value
+  Handler run = nullptr;       // never null; an op that is only an effect has an empty handler
+  std::string_view doc;        // one sentence, for docs/isa.md and `glint isa add.s32`
+  Examples examples;           // examples are documentation and test at once
 };
 
 // Returns the whole table, sorted by family and then by declaration. Inst::op is the index of the row. The

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <string_view>
 
@@ -12,6 +13,7 @@ namespace glint::isa {
 enum class Path : uint8_t { Baseline, Avx2, Avx512, Count };
 constexpr std::string_view name_of(Path p) {
   constexpr std::string_view kNames[] = {"baseline", "avx2", "avx512"};
+  static_assert(std::size(kNames) == size_t(Path::Count));
   return kNames[size_t(p)];
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "isa/op_row.h"
 #include "isa/text.h"
@@ -101,6 +102,7 @@ static_assert(!kSpecialNames.back().empty(), "every special has a name");
 
 constexpr std::string_view kStageNames[] = {"ray_generation", "intersection", "any_hit", "closest_hit",
                                             "miss",           "callable",     "compute"};
+static_assert(std::size(kStageNames) == size_t(kNumStages));
 
 bool same_inst(const Inst& a, const Inst& b) {
   return a.op == b.op && a.guard == b.guard && a.imm == b.imm && a.operand == b.operand;

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "isa/inst.h"
+#include "isa/stage.h"
 
 namespace glint::isa {
-
-enum class Stage : uint8_t { RayGeneration, Intersection, AnyHit, ClosestHit, Miss, Callable, Compute };
 
 // Says where an instruction comes from. `file` indexes Program::files, and `line` counts from 1; 0 means
 // unknown.

@@ -6,7 +6,6 @@
 #include <bitset>
 #include <cctype>
 #include <fmt/format.h>
-#include <initializer_list>
 
 #include "isa/descriptors.h"
 #include "isa/hit_object.h"
@@ -87,47 +86,22 @@ class Verifier {
     message(inst);
     constant_address(inst);
     destinations_differ(inst);
-    const Effect e = row_->effect;
-    const bool moves_all = e == Effect::PushReconvergence || e == Effect::Join || e == Effect::EndTrace;
-    if (moves_all && inst.guard != kNoGuard)
+    if (!effect_row(row_->effect).takes_guard && inst.guard != kNoGuard)
       error("there is a guard, but the op moves all lanes of the warp");
   }
 
-  // Checks that the op means something in the program's stage (docs/abi.md; Vulkan's execution models).
+  // Checks that the op means something in the program's stage.
   void stage_of_op() {
-    switch (row_->effect) {
-      case Effect::Trace:
-      case Effect::Resume:
-      case Effect::CallCandidate:
-      case Effect::CallHit:
-      case Effect::EndTrace:
-        return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
-      case Effect::HitObject:
-        if (HitObjectOp(row_->detail) == HitObjectOp::GetTime)
-          return only({Stage::Intersection, Stage::AnyHit, Stage::ClosestHit, Stage::Miss});
-        if (HitObjectOp(row_->detail) == HitObjectOp::Corner) return only({Stage::AnyHit, Stage::ClosestHit});
-        return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss});
-      case Effect::CallCallable:
-        return only({Stage::RayGeneration, Stage::ClosestHit, Stage::Miss, Stage::Callable});
-      case Effect::Report:
-      case Effect::Accepted:
-      case Effect::CallAnyHit:
-        return only({Stage::Intersection});
-      case Effect::Ignore:
-      case Effect::Terminate:
-        return only({Stage::AnyHit});
-      case Effect::Exit:
-        return only({Stage::RayGeneration, Stage::Compute});
-      case Effect::Barrier:
-        return only({Stage::Compute});
-      default:
-        if (row_->memory.space == Space::Shared) only({Stage::Compute});
-    }
+    only(effect_row(row_->effect).stages);
+    if (row_->effect == Effect::HitObject) only(stages_of(HitObjectOp(row_->detail)));
+    if (row_->memory.space == Space::Shared) only({Stage::Compute});
   }
-  void only(std::initializer_list<Stage> stages) {
-    if (std::find(stages.begin(), stages.end(), program_.stage) != stages.end()) return;
+  void only(StageSet stages) {
+    if (stages.contains(program_.stage)) return;
     std::string names;
-    for (const Stage s : stages) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(s));
+    for (int s = 0; s < kNumStages; ++s)
+      if (stages.contains(Stage(s)))
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(Stage(s)));
     error(fmt::format("stands in a shader of stage {}, but belongs in {}", name_of(program_.stage), names));
   }
 
@@ -158,7 +132,7 @@ class Verifier {
 
   // Checks that the message named by a print exists. Its number must be a constant.
   void message(const Inst& inst) {
-    if (row_->effect != Effect::Print && row_->effect != Effect::PrintPart) return;
+    if (effect_row(row_->effect).family != EffectFamily::Print) return;
     const size_t row = inst.operand[0] & kSlotIndexMask;
     if (inst.operand[0] >> kBankShift != kConstantBank >> kBankShift || row >= program_.constants.size())
       return error("the number of the message is not a constant");

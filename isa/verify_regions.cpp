@@ -14,11 +14,6 @@ const OpRow& row_of(const Inst& inst) {
   return op_table()[inst.op];
 }
 
-bool ends_lanes(Effect e) {
-  return e == Effect::Exit || e == Effect::Return || e == Effect::Ignore || e == Effect::Terminate ||
-         e == Effect::Trap;
-}
-
 // Holds stacks of open things as a tree. A stack is named by its top, and equal stacks have equal numbers.
 class Stacks {
  public:
@@ -121,14 +116,14 @@ class RegionWalk {
     uint32_t after = before;
     if (e == Effect::PushReconvergence) after = stacks_.push(before, inst(at).imm);
     if (e == Effect::Join) after = stacks_.below(before);
-    if (e == Effect::Trace) after = stacks_.push(before, Stacks::kTrace);
-    if (e == Effect::EndTrace) {
+    const TraceUse trace = effect_row(e).trace;
+    if (trace == TraceUse::Opens) after = stacks_.push(before, Stacks::kTrace);
+    if (trace == TraceUse::Closes) {
       if (stacks_.top(before) != Stacks::kTrace)
         return error(at, fmt::format("no trace is innermost here: {}", stacks_.text(before)));
       after = stacks_.below(before);
     }
-    if ((e == Effect::Resume || e == Effect::CallCandidate || e == Effect::CallHit) &&
-        !stacks_.in_trace(before))
+    if (trace == TraceUse::Inside && !stacks_.in_trace(before))
       return error(at, "no rt.trace is open on a path to here");
     const bool parts = e == Effect::BranchIndexed || (e == Effect::Branch && inst(at).guard != kNoGuard);
     if (parts && stacks_.top(before) == Stacks::kTrace)
@@ -187,8 +182,7 @@ std::vector<uint32_t> successors(const Program& program, size_t at) {
       if (row_of(entry).effect != Effect::Branch || entry.guard != kNoGuard) break;
       out.push_back(uint32_t(i));
     }
-  const bool leaves = e == Effect::Branch || e == Effect::BranchIndexed || ends_lanes(e);
-  if (!leaves || is_guarded) out.push_back(uint32_t(at + 1));
+  if (effect_row(e).flow == Flow::Next || is_guarded) out.push_back(uint32_t(at + 1));
   return out;
 }
 

@@ -215,7 +215,7 @@ class ValueFlow {
     if (i.guard != kNoGuard) read(state, size_t(kMaxRegisters) + (i.guard & ~kGuardNegate), kNoGuard, at);
     if (state.stack == State::kUnknown) return;
     const Effect e = row.effect;
-    if ((e == Effect::Return || e == Effect::Ignore || e == Effect::Terminate) && state.stack != 0)
+    if (effect_row(e).flow == Flow::Return && state.stack != 0)
       complain_(
           at, fmt::format("%r0 is {} bytes from its value at entry, where the shader returns", state.stack));
     if (is_shader_call(e) && state.stack < int64_t(program_.local_bytes))

@@ -140,7 +140,7 @@ void build_binding_table(exec::World& world, mem::AddressSpace& memory, const Ta
 }
 
 uint32_t stack_bytes(const exec::Image& image, uint32_t max_trace_depth, uint32_t max_callable_depth) {
-  uint64_t largest[size_t(Stage::Compute) + 1] = {};
+  uint64_t largest[size_t(isa::kNumStages)] = {};
   for (const exec::Shader& shader : image.shaders) {
     uint64_t& bytes = largest[size_t(shader.stage)];
     bytes = std::max<uint64_t>(bytes, shader.local_bytes);

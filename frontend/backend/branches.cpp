@@ -35,9 +35,7 @@ class BranchCleaner {
   bool is_branch(const Coded& c) const { return c.inst.op == ops_.bra; }
   bool leaves(const Coded& c) const {
     const isa::Effect effect = isa::op_table()[c.inst.op].effect;
-    return !is_guarded(c) &&
-           (effect == isa::Effect::Branch || effect == isa::Effect::Exit || effect == isa::Effect::Return ||
-            effect == isa::Effect::Ignore || effect == isa::Effect::Terminate);
+    return !is_guarded(c) && isa::ends_block(effect);
   }
   bool falls_through(size_t block) const { return code_[block].empty() || !leaves(code_[block].back()); }
   size_t first_code(size_t block) const {

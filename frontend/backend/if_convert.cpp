@@ -177,9 +177,7 @@ class Converter {
 
   static bool ends(const Instructions& code) {
     if (code.empty() || !is_real(code.back()) || is_guarded(code.back())) return false;
-    const isa::Effect effect = row_of(code.back()).effect;
-    return effect == isa::Effect::Branch || effect == isa::Effect::Exit || effect == isa::Effect::Return ||
-           effect == isa::Effect::Ignore || effect == isa::Effect::Terminate;
+    return isa::ends_block(row_of(code.back()).effect);
   }
 
   // Returns true when all lanes may run `arm` before the lanes of `rest` run `rest`. This holds if `arm`

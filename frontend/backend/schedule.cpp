@@ -10,42 +10,8 @@
 namespace glint::frontend {
 namespace {
 
-// Returns the cycles from issue to use for which the order is tuned. They do not change results, only how
-// well latencies overlap. Arithmetic takes 4 cycles on Volta and later (Z. Jia et al., "Dissecting the NVIDIA
-// Volta GPU architecture via microbenchmarking", 2018, table 4.1); loads take about 28 cycles for an L1 hit
-// (the same paper, table 3.1). Choice: multi-pass and texture latencies are round numbers of the right order
-// of magnitude.
 uint32_t latency_of(const VirtualInst& inst) {
-  switch (row_of(inst).unit) {
-    case isa::Unit::Int:
-    case isa::Unit::Fp32:
-    case isa::Unit::Fp16:
-    case isa::Unit::Move:
-    case isa::Unit::Predicate:
-      return 4;
-    case isa::Unit::Sfu:
-      return 16;
-    case isa::Unit::IntDiv:
-    case isa::Unit::FpDiv:
-    case isa::Unit::Fp64Div:
-      return 40;
-    case isa::Unit::Shuffle:
-      return 24;
-    case isa::Unit::Fp64:
-      return 16;
-    case isa::Unit::Const:
-      return 8;
-    case isa::Unit::Lsu:
-      return 28;
-    case isa::Unit::Tex:
-      return 80;
-    case isa::Unit::Branch:
-    case isa::Unit::Barrier:
-    case isa::Unit::RtUnit:
-    case isa::Unit::Count:
-      return 1;
-  }
-  return 1;
+  return isa::scheduled_latency(row_of(inst).unit);
 }
 
 // Counts how much of the register files values take: 32-bit registers and predicates.
@@ -81,14 +47,13 @@ struct MemoryUse {
 MemoryUse memory_use(const VirtualInst& inst) {
   const isa::OpRow& row = row_of(inst);
   MemoryUse use;
-  if (row.effect == isa::Effect::SurfaceStore || row.effect == isa::Effect::SurfaceLoad ||
-      row.effect == isa::Effect::Texture) {
+  const isa::EffectRow& effect = isa::effect_row(row.effect);
+  if (effect.family == isa::EffectFamily::Image) {
     // Choice: images and buffers may share memory, so texture and surface ops are ordered like global
     // accesses.
-    use = {true, row.effect == isa::Effect::SurfaceStore, false, isa::Space::Global, 0, 0};
-  } else if (row.effect == isa::Effect::Load || row.effect == isa::Effect::Store ||
-             row.effect == isa::Effect::Atomic) {
-    use = {true,     row.effect != isa::Effect::Load,
+    use = {true, effect.writes_memory, false, isa::Space::Global, 0, 0};
+  } else if (effect.family == isa::EffectFamily::Memory) {
+    use = {true,     effect.writes_memory,
            false,    row.memory.space,
            inst.imm, int64_t{inst.imm} + row.memory.bytes * row.memory.count};
     for (const VirtualOperand& o : inst.operands)

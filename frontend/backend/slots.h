@@ -90,17 +90,13 @@ void for_each_use(const VirtualInst& inst, Visit&& visit) {
 // results.
 inline bool is_pure(const VirtualInst& inst) {
   if (!is_real(inst)) return false;
-  const isa::Effect effect = row_of(inst).effect;
-  return effect == isa::Effect::None || effect == isa::Effect::Load || effect == isa::Effect::Texture ||
-         effect == isa::Effect::SurfaceLoad;
+  const isa::Freedom freedom = isa::effect_row(row_of(inst).effect).freedom;
+  return freedom.may_drop && freedom.may_move;
 }
 
 // Returns true for ops that neither steer lanes nor touch rays or calls. Only these ops may be moved.
 inline bool is_movable(const VirtualInst& inst) {
-  if (is_pure(inst)) return true;
-  if (!is_real(inst)) return false;
-  const isa::Effect effect = row_of(inst).effect;
-  return effect == isa::Effect::Store || effect == isa::Effect::Atomic || effect == isa::Effect::SurfaceStore;
+  return is_real(inst) && isa::effect_row(row_of(inst).effect).freedom.may_move;
 }
 
 inline bool is_call(const VirtualInst& inst) {

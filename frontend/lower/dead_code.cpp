@@ -10,17 +10,8 @@ namespace glint::frontend {
 namespace {
 
 bool has_effect(const VirtualInst& inst) {
-  if (inst.kind != VirtualInst::Kind::Real) return true;
-  switch (isa::op_table()[inst.op].effect) {
-    case isa::Effect::None:
-    case isa::Effect::Load:
-    case isa::Effect::Texture:
-    case isa::Effect::SurfaceLoad:
-    case isa::Effect::Accepted:
-      return false;
-    default:
-      return true;
-  }
+  return inst.kind != VirtualInst::Kind::Real ||
+         !isa::effect_row(isa::op_table()[inst.op].effect).freedom.may_drop;
 }
 
 size_t num_destinations(const VirtualInst& inst) {
@@ -33,12 +24,9 @@ size_t num_destinations(const VirtualInst& inst) {
 // Turns an atomic whose old value nobody reads into a reduction, which hardware sends without waiting for an
 // answer.
 void drop_result(VirtualInst* inst) {
-  const isa::OpRow& row = isa::op_table()[inst->op];
-  constexpr std::string_view kAtomic = "atom.";
-  if (row.effect != isa::Effect::Atomic || !row.name.starts_with(kAtomic)) return;
-  const int reduction = isa::find_op("red." + std::string(row.name.substr(kAtomic.size())));
-  if (reduction < 0) return;
-  inst->op = uint16_t(reduction);
+  const std::string_view reduction = isa::op_table()[inst->op].reduction;
+  if (reduction.empty()) return;
+  inst->op = isa::op_index(reduction);
   inst->operands.erase(inst->operands.begin());
 }
 

@@ -46,9 +46,7 @@ class CountedLoop {
 
  private:
   static bool can_be_copied(const VirtualInst& inst) {
-    if (!is_real(inst) || is_guarded(inst)) return false;
-    return is_movable(inst) || row_of(inst).effect == isa::Effect::Barrier ||
-           row_of(inst).effect == isa::Effect::Fence;
+    return is_real(inst) && !is_guarded(inst) && isa::effect_row(row_of(inst).effect).freedom.may_copy;
   }
   // Returns false for instructions that involve other lanes. Unrolling could separate lanes of a warp that
   // were in one turn into different copies.
@@ -134,8 +132,8 @@ class CountedLoop {
       }
     if (!source) return false;
     const isa::OpRow& row = row_of(*source);
-    const bool reads_constants = row.effect == isa::Effect::Load &&
-                                 (row.name.starts_with("ld.const") || row.name.starts_with("ld.param"));
+    const bool reads_constants =
+        row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param;
     if (row.effect != isa::Effect::None && !reads_constants) return false;
     if (row.unit == isa::Unit::Shuffle || row.name == "activemask.b32") return false;
     bool uniform = true;

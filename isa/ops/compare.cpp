@@ -62,18 +62,9 @@ constexpr size_t kNumRows = [] {
   for (const IntegerType& of : kTypes) relations += of.num_relations;
   return relations * kRowsOfRelation;
 }();
-constexpr auto kNames = [] {
-  std::array<Word, kNumRows> out{};
-  size_t n = 0;
-  each_row([&](NameParts name, auto&&) { out[n++] = Word(name); });
-  return out;
-}();
-constexpr auto kRows = [] {
-  std::array<OpRow, kNumRows> out{};
-  size_t n = 0;
-  each_row([&](NameParts, auto&& make) { out[n] = make(kNames[n].view()), ++n; });
-  return out;
-}();
+constexpr auto kEachRow = [](auto&& visit) { each_row(visit); };
+constexpr auto kNames = names_of<kNumRows>(kEachRow);
+constexpr auto kRows = rows_of(kNames, kEachRow);
 
 }  // namespace
 

@@ -204,5 +204,21 @@ constexpr void each_row(const Compared& type, const Relation& r, Visit&& visit) 
           [&](auto name) { return set_row(name, type, r, result); });
 }
 
+// Build the names and the rows of a file. each(visit) calls visit(parts of a name, make) for all its rows.
+template <size_t kNumRows, class Each>
+constexpr std::array<Word, kNumRows> names_of(Each&& each) {
+  std::array<Word, kNumRows> out{};
+  size_t n = 0;
+  each([&](NameParts name, auto&&) { out[n++] = Word(name); });
+  return out;
+}
+template <size_t kNumRows, class Each>
+constexpr std::array<OpRow, kNumRows> rows_of(const std::array<Word, kNumRows>& names, Each&& each) {
+  std::array<OpRow, kNumRows> out{};
+  size_t n = 0;
+  each([&](NameParts, auto&& make) { out[n] = make(names[n].view()), ++n; });
+  return out;
+}
+
 }  // namespace
 }  // namespace glint::isa::GLINT_ISA_PATH

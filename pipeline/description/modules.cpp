@@ -59,6 +59,7 @@ const char* name_of(frontend::BindingKind kind) {
   constexpr const char* kNames[] = {"uniform buffer",  "storage buffer",         "storage image",
                                     "sampled image",   "acceleration structure", "sampler",
                                     "unknown resource"};
+  static_assert(std::size(kNames) == size_t(frontend::BindingKind::Other) + 1);
   return kNames[size_t(kind)];
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <utility>
 
 #define TOML_EXCEPTIONS 1
@@ -60,6 +61,7 @@ Value parsed(const std::string& file, const Parse& parse) {
 const char* name_of(Value::Kind kind) {
   constexpr const char* kNames[] = {"nothing",  "true or false", "a whole number", "a number",
                                     "a string", "a list",        "a table"};
+  static_assert(std::size(kNames) == size_t(Value::Kind::Table) + 1);
   return kNames[size_t(kind)];
 }
 

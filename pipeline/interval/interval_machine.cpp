@@ -159,7 +159,7 @@ Cycle IntervalMachine::access(Core& core, uint32_t slot, const exec::Issued& iss
     coalesce_local(core.lines, core.local, slot, addresses, local, bytes);
     coalesce_global(core.lines, *world_.memory, addresses, executor_.lanes_in(Space::Global), bytes);
   }
-  const bool is_write = issued.row->effect == Effect::Store || issued.row->effect == Effect::SurfaceStore;
+  const bool is_write = isa::only_writes_memory(issued.row->effect);
   Cycle done = std::max<Cycle>(begin, at + row.latency);
   Cycle sent = begin;
   for (const core::LineSectors& line : core.lines.lines()) {

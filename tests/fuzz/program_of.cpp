@@ -97,7 +97,7 @@ Program program_of(std::span<const uint8_t> bytes) {
   Bytes in(bytes);
   Program p;
   p.name = "bytes";
-  p.stage = Stage(in.byte() % (uint32_t(Stage::Compute) + 1));
+  p.stage = Stage(in.byte() % uint32_t(kNumStages));
   p.num_registers = 8 + in.byte() % 40;
   p.local_bytes = in.byte() * 4;
   p.shared_bytes = in.byte() * 4;

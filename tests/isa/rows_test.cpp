@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "isa/atomic.h"
 #include "isa/paths.h"
 #include "tests/isa/warp_fixture.h"
 #include "tests/support/catch.h"
@@ -77,6 +78,32 @@ TEST_CASE("every row is complete: a name of its own, a sentence, a handler and t
     CHECK(slots <= kMaxOperands);
   }
   CHECK(find_op("add.u31") == -1);
+}
+
+TEST_CASE("an atomic names its reduction: the same op without the old value") {
+  for (const OpRow& row : op_table()) {
+    INFO(row.name);
+    const bool gives_old_value = row.effect == Effect::Atomic && is_destination(row.operands.kind[0]);
+    const int red = gives_old_value ? find_op("red" + std::string(row.name.substr(row.name.find('.')))) : -1;
+    CHECK(row.reduction == (red < 0 ? "" : op_table()[size_t(red)].name));
+    if (red < 0) continue;
+    const OpRow& reduction = op_table()[size_t(red)];
+    CHECK(reduction.effect == Effect::Atomic);
+    CHECK(reduction.atomic == row.atomic);
+    CHECK(reduction.detail == row.detail);
+    CHECK(reduction.operands.count + 1 == row.operands.count);
+  }
+}
+
+TEST_CASE("the kind of an atomic is that of its function") {
+  const auto kind_of = [](std::string_view name) { return AtomicKind(op_table()[op_index(name)].detail); };
+  CHECK(kind_of("atom.shared.add.u32") == AtomicKind::Integer);
+  CHECK(kind_of("atom.shared.add.noftz.f16x2") == AtomicKind::Integer);
+  CHECK(kind_of("atom.shared.exch.b32") == AtomicKind::Integer);
+  CHECK(kind_of("atom.shared.cas.b64") == AtomicKind::Swap);
+  CHECK(kind_of("atom.global.cas.b16") == AtomicKind::Swap);
+  CHECK(kind_of("red.shared.add.f32") == AtomicKind::FloatAdd);
+  CHECK(kind_of("atom.add.f64") == AtomicKind::FloatAdd);
 }
 
 TEST_CASE("the rows have the same names in the same order on every path") {

@@ -122,12 +122,10 @@ Program program_of_one_row(uint16_t op, Stage stage) {
   p.code.push_back(inst);
   const bool is_entry = stage == Stage::RayGeneration || stage == Stage::Compute;
   const Inst last = simple(is_entry ? "exit" : "ret");
-  const bool ends = e == Effect::Exit || e == Effect::Return || e == Effect::Ignore ||
-                    e == Effect::Terminate || e == Effect::Trap;
   if (e == Effect::PushReconvergence) p.code.push_back(simple("join"));
   if (e == Effect::BranchIndexed) p.code.push_back(simple("bra", {}, int32_t(p.code.size()) + 1));
   if (e == Effect::Trace || (in_trace && e != Effect::EndTrace)) p.code.push_back(simple("rt.end"));
-  if (!ends) p.code.push_back(last);
+  if (!ends_lanes(e)) p.code.push_back(last);
   if (e == Effect::Call) p.code.push_back(simple("ret"));
   p.lines.resize(p.code.size());
   return p;

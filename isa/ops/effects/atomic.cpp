@@ -1,6 +1,8 @@
 // Defines read-modify-write of memory: what each op makes of the old bits. The machine does the rest, lane by
 // lane.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/atomic.h"
+
 #include "isa/half.h"
 #include "isa/op_makers.h"
 #include "isa/ops/addresses.h"
@@ -103,19 +105,20 @@ uint64_t compare_and_swap(uint64_t old, uint64_t expected, uint64_t value) {
   return old == expected ? value : old;
 }
 
+using enum AtomicKind;
 struct Op {
   std::string_view suffix, what;
   uint8_t bytes;
   AtomicFunction function;
-  bool is_swap = false;  // takes two operands
-  bool has_red = true;   // makes sense without the old value
+  AtomicKind kind = Integer;  // of a Swap: it takes two operands
+  bool has_red = true;        // makes sense without the old value
 };
 constexpr Op kOps[] = {
     {"add.u32", "Adds", 4, &add_integer},
     {"add.s32", "Adds", 4, &add_integer},
     {"add.u64", "Adds", 8, &add_integer},
-    {"add.f32", "Adds single precision", 4, &add_f32},
-    {"add.f64", "Adds double precision", 8, &add_f64},
+    {"add.f32", "Adds single precision", 4, &add_f32, FloatAdd},
+    {"add.f64", "Adds double precision", 8, &add_f64, FloatAdd},
     {"add.noftz.f16", "Adds f16", 2, &add_16<&add_half>},
     {"add.noftz.f16x2", "Adds both f16 of a pair", 4, &add_pair<&add_half>},
     {"add.noftz.bf16", "Adds bf16", 2, &add_16<&add_bfloat>},
@@ -140,11 +143,11 @@ constexpr Op kOps[] = {
     {"xor.b64", "Computes the bitwise exclusive or", 8, &bits_xor},
     {"inc.u32", "Counts up, or sets 0 from the operand on,", 4, &increment},
     {"dec.u32", "Counts down, or sets the operand for 0 and above the operand,", 4, &decrement},
-    {"exch.b32", "Replaces 4 bytes by the operand", 4, &exchange, false, false},
-    {"exch.b64", "Replaces 8 bytes by the operand", 8, &exchange, false, false},
-    {"cas.b16", "Stores the second operand, if the first is there,", 2, &compare_and_swap, true, false},
-    {"cas.b32", "Stores the second operand, if the first is there,", 4, &compare_and_swap, true, false},
-    {"cas.b64", "Stores the second operand, if the first is there,", 8, &compare_and_swap, true, false},
+    {"exch.b32", "Replaces 4 bytes by the operand", 4, &exchange, Integer, false},
+    {"exch.b64", "Replaces 8 bytes by the operand", 8, &exchange, Integer, false},
+    {"cas.b16", "Stores the second operand, if the first is there,", 2, &compare_and_swap, Swap, false},
+    {"cas.b32", "Stores the second operand, if the first is there,", 4, &compare_and_swap, Swap, false},
+    {"cas.b64", "Stores the second operand, if the first is there,", 8, &compare_and_swap, Swap, false},
 };
 
 struct Place {
@@ -195,11 +198,12 @@ constexpr OpRow atomic_row(size_t n, const Place& place, const Op& op, bool retu
   if (returns) operands.kind[operands.count++] = is_64 ? Dst64 : Dst32;
   operands.kind[operands.count++] = address;
   operands.kind[operands.count++] = source;
-  if (op.is_swap) operands.kind[operands.count++] = source;
+  if (op.kind == Swap) operands.kind[operands.count++] = source;
   OpRow row =
       effect_op(kNames[n].view(), Class::Mem, Unit::Lsu, Effect::Atomic, operands, kSentences[n].view());
   row.memory = {place.space, op.bytes, 1, false};
   row.atomic = op.function;
+  row.detail = uint16_t(op.kind);
   row.run = is_wide   ? returns ? &form_addresses<uint64_t, 1> : &form_addresses<uint64_t, 0>
               : returns ? &form_addresses<uint32_t, 1>
                       : &form_addresses<uint32_t, 0>;
@@ -208,9 +212,10 @@ constexpr OpRow atomic_row(size_t n, const Place& place, const Op& op, bool retu
 
 constexpr auto kRows = [] {
   std::array<OpRow, kNumRows> out{};
-  size_t n = 0;
+  size_t n = 0, red = std::size(kPlaces) * std::size(kOps);  // the rows without the old value come last
   each_row([&](const Place& place, const Op& op, bool returns) {
     out[n] = atomic_row(n, place, op, returns);
+    if (returns && op.has_red) out[n].reduction = kNames[red++].view();
     ++n;
   });
   return out;
