@@ -85,8 +85,8 @@ struct Units {
   }
   // Returns the units in the order of isa::Unit.
   std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {
-    return {integer,   int_div, fp32, fp_div,   fp64, fp64_div, fp16,    sfu,    move,
-            predicate, shuffle, lsu,  constant, tex,  branch,   barrier, rt_unit};
+    return std::array{integer,   int_div, fp32, fp_div,   fp64, fp64_div, fp16,    sfu,    move,
+                      predicate, shuffle, lsu,  constant, tex,  branch,   barrier, rt_unit};
   }
 };
 
