@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <tuple>
 
 #include "base/params.h"
 #include "base/registry.h"
@@ -23,8 +22,8 @@ struct FetchParams {
   uint32_t ways = 32;
   uint32_t prefetch = 8;                              // lines of a stream buffer (Jouppi, ISCA 1990)
   PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         flag(&FetchParams::perfect, "perfect", "True: every instruction is present when its warp needs it."),
         param(&FetchParams::size, "size", "byte", "Size of each scheduler's instruction cache (L0).", 128,
               1 << 20),
@@ -48,18 +47,17 @@ struct ConstantParams {
   // The CUDA programming guide says that different addresses in a warp are served one after another.
   bool serial = true;
   PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
-  static constexpr auto params() {
-    return std::tuple{
-        flag(&ConstantParams::perfect, "perfect", "True: constant loads always hit."),
-        param(&ConstantParams::size, "size", "byte", "Size of a core's constant cache (level 1).", 64,
-              1 << 20),
-        param(&ConstantParams::ways, "ways", "way",
-              "Number of lines per set. 0: the cache is fully associative.", 0, 4096),
-        policy(&ConstantParams::replacement, "replacement",
-               "Selects the line of a set that makes way for a new line in the constant cache."),
-        param(&ConstantParams::line, "line", "byte", "Size of a line. It is a power of two.", 32, 128),
-        flag(&ConstantParams::serial, "serial",
-             "True: a load takes the pipe's interval for each different word that its lanes want.")};
+  static ParamList params() {
+    return {flag(&ConstantParams::perfect, "perfect", "True: constant loads always hit."),
+            param(&ConstantParams::size, "size", "byte", "Size of a core's constant cache (level 1).", 64,
+                  1 << 20),
+            param(&ConstantParams::ways, "ways", "way",
+                  "Number of lines per set. 0: the cache is fully associative.", 0, 4096),
+            policy(&ConstantParams::replacement, "replacement",
+                   "Selects the line of a set that makes way for a new line in the constant cache."),
+            param(&ConstantParams::line, "line", "byte", "Size of a line. It is a power of two.", 32, 128),
+            flag(&ConstantParams::serial, "serial",
+                 "True: a load takes the pipe's interval for each different word that its lanes want.")};
   }
 };
 
@@ -70,8 +68,8 @@ struct CodeCacheParams {
   uint32_t ways = 16;  // Choice: unpublished
   uint32_t latency = 78;
   PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&CodeCacheParams::size, "size", "byte",
               "Size of a core's cache for instructions and constants (level 1.5).", 1024, 1 << 24),
         param(&CodeCacheParams::ways, "ways", "way",

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <tuple>
 
 #include "base/diagnostics.h"
 #include "base/params.h"
@@ -28,11 +27,11 @@ inline constexpr uint32_t kRegisterUnit = 8;
 struct UnitParams {
   uint32_t latency = 4;   // cycles from issue to the first cycle in which a dependent instruction can issue
   uint32_t interval = 2;  // cycles from issue to the next issue on the same pipe of the same scheduler
-  static constexpr auto params() {
-    return std::tuple{param(&UnitParams::latency, "latency", "cycle",
-                            "Cycles from issue to the issue of a dependent instruction.", 1, 1000),
-                      param(&UnitParams::interval, "interval", "cycle",
-                            "Cycles from issue to the next issue on the same pipe.", 1, 1000)};
+  static ParamList params() {
+    return {param(&UnitParams::latency, "latency", "cycle",
+                  "Cycles from issue to the issue of a dependent instruction.", 1, 1000),
+            param(&UnitParams::interval, "interval", "cycle",
+                  "Cycles from issue to the next issue on the same pipe.", 1, 1000)};
   }
 };
 
@@ -53,8 +52,8 @@ struct Units {
   UnitParams branch{4, 2};
   UnitParams barrier{13, 2};  // bar.sync of an H200: 12.75 cycles, and 2 per warp
   UnitParams rt_unit{4, 4};   // time to hand over rays, counted when they have come back
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         section(&Units::integer, "int", "Times of integer arithmetic and logic."),
         section(&Units::int_div, "int_div",
                 "Times of integer division, which runs on the special-function pipe."),
@@ -107,8 +106,8 @@ struct LsuParams {
   uint32_t atomic_latency = 0;  // H200: 204; 0, because that of other parts is unpublished
   bool atomic_turns = false;    // H200: true; false, because that of other parts is unpublished
   bool holds_operands() const { return war_latency + shared_war_latency > 0; }
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&LsuParams::queue, "queue", "instruction",
               "Number of memory instructions that each scheduler's queue holds.", 1, 16),
         param(&LsuParams::accept_interval, "accept_interval", "cycle",
@@ -145,8 +144,8 @@ struct TextureParams {
   uint32_t samples_per_cycle = 4;
   uint32_t queue = 5;
   bool own_door = true;
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&TextureParams::samples_per_cycle, "samples_per_cycle", "sample",
               "Number of samples of up to four texels per cycle and core. 0: only the unit's interval limits "
               "samples.",
@@ -165,8 +164,8 @@ struct TextureParams {
 // Model: there is no cache of operands, and memory instructions read when the ports are free.
 struct RegisterFileParams {
   uint32_t banks = 0, window = 3;
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&RegisterFileParams::banks, "banks", "bank",
               "Number of banks of a scheduler's registers. Register r is in bank r mod this number. 0: there "
               "are no conflicts.",
@@ -180,17 +179,16 @@ struct RegisterFileParams {
 // Holds the times of atomics that differ from those of an integer addition.
 struct AtomicParams {
   uint32_t latency = 0, pass = 0, hidden = 0;
-  static constexpr auto params() {
-    return std::tuple{
-        param(&AtomicParams::latency, "latency", "cycle",
-              "Cycles from issue to the issue of a dependent instruction, for one lane. 0: all times are "
-              "those of integer atomics.",
-              0, 10000),
-        param(&AtomicParams::pass, "pass", "cycle",
-              "Extra cycles of latency for each further turn of lanes that meet in a bank.", 0, 1000),
-        param(&AtomicParams::hidden, "hidden", "cycle",
-              "Cycles of the further turns' latency, in total, that the latency of one lane hides.", 0,
-              1000)};
+  static ParamList params() {
+    return {param(&AtomicParams::latency, "latency", "cycle",
+                  "Cycles from issue to the issue of a dependent instruction, for one lane. 0: all times are "
+                  "those of integer atomics.",
+                  0, 10000),
+            param(&AtomicParams::pass, "pass", "cycle",
+                  "Extra cycles of latency for each further turn of lanes that meet in a bank.", 0, 1000),
+            param(&AtomicParams::hidden, "hidden", "cycle",
+                  "Cycles of the further turns' latency, in total, that the latency of one lane hides.", 0,
+                  1000)};
   }
 };
 
@@ -203,8 +201,8 @@ struct SharedParams {
   uint32_t atomic_pass = 2, atomic_hidden = 0;
   AtomicParams swap, float_add;
   uint32_t conflict_turn = 1, conflict_hidden = 0;
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(
             &SharedParams::latency, "latency", "cycle",
             "Cycles from the issue of a load without bank conflicts to the issue of a dependent instruction.",
@@ -239,15 +237,15 @@ struct SharedParams {
 struct FenceParams {
   uint32_t block = 36, gpu = 289, system = 1055;
   uint32_t acknowledgement = 0;  // H200: 286; 0: stores are done when they have left their core
-  static constexpr auto params() {
-    return std::tuple{param(&FenceParams::block, "block", "cycle",
-                            "Cycles that membar.cta takes after the warp's last access.", 1, 60000),
-                      param(&FenceParams::gpu, "gpu", "cycle",
-                            "Cycles that membar.gl takes after the warp's last access.", 1, 60000),
-                      param(&FenceParams::system, "system", "cycle",
-                            "Cycles that membar.sys takes after the warp's last access.", 1, 60000),
-                      param(&FenceParams::acknowledgement, "acknowledgement", "cycle",
-                            "Extra cycles of membar.gl after a store to global memory.", 0, 60000)};
+  static ParamList params() {
+    return {param(&FenceParams::block, "block", "cycle",
+                  "Cycles that membar.cta takes after the warp's last access.", 1, 60000),
+            param(&FenceParams::gpu, "gpu", "cycle",
+                  "Cycles that membar.gl takes after the warp's last access.", 1, 60000),
+            param(&FenceParams::system, "system", "cycle",
+                  "Cycles that membar.sys takes after the warp's last access.", 1, 60000),
+            param(&FenceParams::acknowledgement, "acknowledgement", "cycle",
+                  "Extra cycles of membar.gl after a store to global memory.", 0, 60000)};
   }
 };
 
@@ -258,13 +256,13 @@ struct FenceParams {
 // of other parts have what they need in their code.
 struct PrologueParams {
   uint32_t instructions = 0, shared_instructions = 0;
-  static constexpr auto params() {
-    return std::tuple{param(&PrologueParams::instructions, "instructions", "instruction",
-                            "Number of issue slots of each warp before its first instruction.", 0, 1000),
-                      param(&PrologueParams::shared_instructions, "shared_instructions", "instruction",
-                            "Number of additional issue slots of each warp before its first instruction, "
-                            "when the launch has shared memory.",
-                            0, 1000)};
+  static ParamList params() {
+    return {param(&PrologueParams::instructions, "instructions", "instruction",
+                  "Number of issue slots of each warp before its first instruction.", 0, 1000),
+            param(&PrologueParams::shared_instructions, "shared_instructions", "instruction",
+                  "Number of additional issue slots of each warp before its first instruction, "
+                  "when the launch has shared memory.",
+                  0, 1000)};
   }
 };
 
@@ -304,8 +302,8 @@ struct Params {
   uint64_t instruction_budget = 100'000'000;
   // Choice: this is 15 ms of a GPU. Only warps that spin are known to make so little progress for so long.
   uint64_t livelock_budget = 20'000'000;
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&Params::warps, "warps", "warp",
               "Largest number of resident warps of a core. Registers may limit it further.", 1, kMaxWarps),
         param(&Params::schedulers, "schedulers", "scheduler",

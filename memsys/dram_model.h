@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "base/stats.h"
 #include "base/types.h"
 #include "memsys/dram/clock_domains.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "base/types.h"
 #include "engine/engine.h"
 

@@ -4,7 +4,6 @@
 #pragma once
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -39,8 +38,8 @@ struct L1Params {
   std::string allocate = "on_fill";  // Vulkan-Sim: "s", streaming
   bool fill_takes_access = true;     // Choice: arrays have one port; vendors do not publish it
 
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&L1Params::size, "size", "byte", "Size of the L1's data array.", 0, uint64_t{1} << 30),
         param(&L1Params::ways, "ways", "way", "Number of lines per set. 0: the cache is fully associative.",
               0, 1 << 20),
@@ -95,8 +94,8 @@ struct NocParams {
   uint32_t sides = 1;     // an H100 has 2; the far side takes 156 cycles more, there and back
   uint32_t far_latency = 0;
 
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         policy(&NocParams::topology, "topology",
                "Selects the network that connects the cores with the L2 slices."),
         param(&NocParams::core_request_bytes, "core_request_bytes", "byte/cycle",
@@ -148,8 +147,8 @@ struct L2Params {
   bool write_masks = true;         // GPGPU-Sim has byte masks and fetches a sector when it is read
   bool fill_takes_service = true;  // Choice: arrays have one port; vendors do not publish it
 
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&L2Params::slices, "slices", "slice",
               "Number of L2 slices in a partition. Each slice has its own ports, and all share the DRAM "
               "channel.",
@@ -204,8 +203,8 @@ struct Params {
   L2Params l2;
   DramParams dram;
 
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&Params::line, "line", "byte", "Size of a line in both cache levels.", 0, 4096),
         param(&Params::interleave, "interleave", "byte",
               "Number of consecutive bytes that stay in one partition.", 0, 1 << 20),

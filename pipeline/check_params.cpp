@@ -49,10 +49,3 @@ void check(const GpuParams& params, Diagnostics& diagnostics) {
 }
 
 }  // namespace glint::pipeline
-
-namespace glint {
-
-template void read_params(ConfigTable&, pipeline::GpuParams&);
-template std::vector<ParamInfo> describe_params(const pipeline::GpuParams&, const std::string&);
-
-}  // namespace glint

@@ -3,7 +3,6 @@
 #pragma once
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -22,8 +21,8 @@ struct CompilerParams {
   bool contract = false;
   uint32_t guard_latency = 0;
   bool queries_call = false;  // It has no key, because it follows from GpuParams::rt.unit.
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&CompilerParams::max_registers, "max_registers", "register",
               "Number of 32-bit registers per thread. Values beyond them spill to local memory.", 8, 255),
         flag(&CompilerParams::schedule, "schedule",
@@ -44,27 +43,17 @@ struct GpuParams {
   rt::Params rt;
   rt::BuildOptions bvh;
   CompilerParams compiler;
-  static constexpr auto params() {
-    return std::tuple{
-        param(&GpuParams::cores, "cores", "core",
-              "Number of cores (streaming multiprocessors). Each has an L1 and an RT unit.", 1, 256),
-        param(&GpuParams::clock_mhz, "clock_mhz", "MHz", "Clock frequency of cores, network and L2.", 1.0,
-              10000.0),
-        section(&GpuParams::core, "core", "Parameters of each core."),
-        section(&GpuParams::memory, "memory", "Parameters of caches, network and DRAM."),
-        section(&GpuParams::rt, "rt", "Parameters of each core's ray-tracing unit."),
-        section(&GpuParams::bvh, "bvh", "Parameters of the construction of acceleration structures."),
-        section(&GpuParams::compiler, "compiler", "Parameters of code generation.")};
+  static ParamList params() {
+    return {param(&GpuParams::cores, "cores", "core",
+                  "Number of cores (streaming multiprocessors). Each has an L1 and an RT unit.", 1, 256),
+            param(&GpuParams::clock_mhz, "clock_mhz", "MHz", "Clock frequency of cores, network and L2.", 1.0,
+                  10000.0),
+            section(&GpuParams::core, "core", "Parameters of each core."),
+            section(&GpuParams::memory, "memory", "Parameters of caches, network and DRAM."),
+            section(&GpuParams::rt, "rt", "Parameters of each core's ray-tracing unit."),
+            section(&GpuParams::bvh, "bvh", "Parameters of the construction of acceleration structures."),
+            section(&GpuParams::compiler, "compiler", "Parameters of code generation.")};
   }
 };
 
 }  // namespace glint::pipeline
-
-namespace glint {
-
-// check_params.cpp has the code of these two, because compiling the reading and describing of a few hundred
-// keys takes seconds.
-extern template void read_params(ConfigTable&, pipeline::GpuParams&);
-extern template std::vector<ParamInfo> describe_params(const pipeline::GpuParams&, const std::string&);
-
-}  // namespace glint

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/check.h"
 #include "pipeline/check_params.h"
 #include "pipeline/conservation.h"
 #include "pipeline/functional_machine.h"

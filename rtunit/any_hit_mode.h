@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "rtunit/traversal/candidate_table.h"
 #include "rtunit/traversal/ray_state.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "rtunit/structure/structure.h"
 
 namespace glint::rt {

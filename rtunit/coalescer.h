@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
 
 namespace glint::rt {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "rtunit/structure/structure.h"
 
 namespace glint::rt {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 #include "base/params.h"
@@ -22,13 +21,13 @@ namespace glint::rt {
 // `latency`.
 struct PipelineParams {
   uint32_t latency = 1, interval = 1, units = 1;
-  static constexpr auto params() {
-    return std::tuple{param(&PipelineParams::latency, "latency", "cycle",
-                            "Cycles from the start of a test to its result.", 1, 1000),
-                      param(&PipelineParams::interval, "interval", "cycle",
-                            "Cycles from the start of a test to the next start on the same unit.", 1, 1000),
-                      param(&PipelineParams::units, "units", "unit",
-                            "Number of tests that can start in the same cycle.", 1, 4096)};
+  static ParamList params() {
+    return {param(&PipelineParams::latency, "latency", "cycle",
+                  "Cycles from the start of a test to its result.", 1, 1000),
+            param(&PipelineParams::interval, "interval", "cycle",
+                  "Cycles from the start of a test to the next start on the same unit.", 1, 1000),
+            param(&PipelineParams::units, "units", "unit",
+                  "Number of tests that can start in the same cycle.", 1, 4096)};
   }
 };
 
@@ -63,8 +62,8 @@ struct Params {
   PolicyChoice<Coalescer> coalescing{"within_warp"};
   PolicyChoice<StackModel> stack{"short_stack"};
   Shortcuts shortcuts;
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         choice(&Params::unit, "unit",
                "Selects who walks rays: the RT unit, which the other keys under `rt` describe, or ordinary "
                "instructions of the core (shaders/traversal).",

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "rtunit/traversal/ray_state.h"
 
 namespace glint::rt {

@@ -16,7 +16,7 @@
 #include "apps/glint/session.h"
 #include "base/check.h"
 #include "base/diagnostics.h"
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 
 namespace glint::app {
 namespace {

@@ -1,6 +1,5 @@
 // Implements the op times `by_unit`: every op has the latency and the interval of its unit.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "core/op_times.h"
 
@@ -12,7 +11,7 @@ class ByUnit final : public OpTimes {
   static constexpr std::string_view kName = "by_unit";
   static constexpr std::string_view kDoc = "Every op has the latency and the interval of its unit.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   ByUnit(Params, Context) {}
   std::span<const OpTime> entries() const override { return {}; }

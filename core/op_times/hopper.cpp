@@ -1,7 +1,6 @@
 // Implements the op times `hopper`: an H200's times of the ops that differ from their unit, by
 // microbenchmarks.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "core/op_times.h"
 
@@ -122,7 +121,7 @@ class Hopper final : public OpTimes {
   static constexpr std::string_view kDoc =
       "Ops that differ from their unit on an NVIDIA H200 have the measured times.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Hopper(Params, Context) {}
   std::span<const OpTime> entries() const override { return kTimes; }

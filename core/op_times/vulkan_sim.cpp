@@ -1,6 +1,5 @@
 // Implements the op times `vulkan_sim`: Vulkan-Sim's table of PTX opcodes and the pipeline around it.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "core/op_times.h"
 
@@ -68,7 +67,7 @@ class VulkanSim final : public OpTimes {
       "Ops have the times of Vulkan-Sim's table of PTX opcodes: 1 cycle for what it does not name, and 100 "
       "for roots.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   VulkanSim(Params, Context) {}
   std::span<const OpTime> entries() const override { return kTimes; }

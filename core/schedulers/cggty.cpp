@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
-#include <tuple>
 
 #include "core/issue_scheduler.h"
 
@@ -20,7 +19,7 @@ class GreedyThenYoungest final : public IssueScheduler {
       "A scheduler issues from the same warp as long as it is ready, and then from the youngest ready warp "
       "(compiler-guided greedy then youngest).";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   GreedyThenYoungest(Params, Context) {}
 

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
-#include <tuple>
 
 #include "core/issue_scheduler.h"
 
@@ -18,7 +17,7 @@ class GreedyThenOldest final : public IssueScheduler {
       "A scheduler issues from the same warp as long as it is ready, and then from the oldest ready warp "
       "(greedy then oldest).";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   GreedyThenOldest(Params, Context) {}
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
-#include <tuple>
 
 #include "core/issue_scheduler.h"
 
@@ -16,7 +15,7 @@ class LooseRoundRobin final : public IssueScheduler {
       "A scheduler issues from the next ready warp after the one that it issued from last (loose round "
       "robin).";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   LooseRoundRobin(Params, Context context) : last_(context.num_warps - 1) {}
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <string_view>
-#include <tuple>
 
 #include "core/issue_scheduler.h"
 
@@ -14,7 +13,7 @@ class OldestFirst final : public IssueScheduler {
   static constexpr std::string_view kName = "oldest";
   static constexpr std::string_view kDoc = "A scheduler issues from the ready warp that was launched first.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   OldestFirst(Params, Context) {}
 

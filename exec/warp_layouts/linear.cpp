@@ -1,7 +1,6 @@
 // Implements the warp layout `linear`: warps are 32 consecutive launch indices, one after the other.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
-#include <tuple>
 
 #include "exec/warp_layout.h"
 
@@ -14,7 +13,7 @@ class Linear final : public WarpLayout {
   static constexpr std::string_view kDoc =
       "A warp has 32 consecutive launch indices (32x1 where rows are that long), row after row.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Linear(Params, Context) {}
 

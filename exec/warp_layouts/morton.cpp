@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <string_view>
-#include <tuple>
 
 #include "exec/warp_layout.h"
 
@@ -18,7 +17,7 @@ class MortonOrder final : public WarpLayout {
   static constexpr std::string_view kDoc =
       "A warp is a tile of 8x4 threads. Tiles, lanes and blocks are in Z-order.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   MortonOrder(Params, Context) {}
 

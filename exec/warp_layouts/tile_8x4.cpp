@@ -1,7 +1,6 @@
 // Implements the warp layout `tile_8x4`: warps are tiles of 8 by 4 threads, row after row of tiles.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
-#include <tuple>
 
 #include "exec/warp_layout.h"
 
@@ -14,7 +13,7 @@ class Tile8x4 final : public WarpLayout {
   static constexpr std::string_view kName = "tile_8x4";
   static constexpr std::string_view kDoc = "A warp is a tile of 8x4 threads. Tiles go row after row.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Tile8x4(Params, Context) {}
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bitset>
+#include <fmt/format.h>
 #include <limits>
 
 #include "base/check.h"

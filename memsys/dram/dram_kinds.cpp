@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/check.h"
 #include "memsys/dram/dram_params.h"
 
 namespace glint::mem {
@@ -112,20 +113,6 @@ void apply_dram_kind(DramParams& params, std::string_view name) {
 
 std::vector<std::string> refresh_modes() {
   return {"none", "all_bank", "per_bank"};
-}
-
-void read_param(ConfigTable& table, DramParams& out, const DramKindParam& param) {
-  const bool given = table.has(param.name);
-  const std::string kind = table.take_name(param.name, out.kind, dram_kinds());
-  if (given && find(kind)) apply_dram_kind(out, kind);
-}
-
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const DramParams& params,
-                    const DramKindParam& param) {
-  std::string range;
-  for (const std::string& name : dram_kinds()) range += (range.empty() ? "" : ", ") + name;
-  out.push_back(
-      {prefix + std::string(param.name), "", std::string(param.doc), config_text(params.kind), range});
 }
 
 }  // namespace glint::mem

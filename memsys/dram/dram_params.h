@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 #include "base/params.h"
@@ -15,20 +14,12 @@
 
 namespace glint::mem {
 
+struct DramParams;
 std::vector<std::string> dram_kinds();  // returns the names, in the order of their table
 std::string_view dram_kind_doc(std::string_view name);
 // Sets every parameter that a data sheet gives for one channel.
 void apply_dram_kind(DramParams& params, std::string_view name);
 std::vector<std::string> refresh_modes();
-
-// Choice: the kind is read before all other keys, whatever their order in a file, so that a single key can
-// change one number of the kind.
-struct DramKindParam {
-  std::string_view name, doc;
-};
-void read_param(ConfigTable& table, DramParams& out, const DramKindParam& param);
-void describe_param(std::vector<ParamInfo>& out, const std::string& prefix, const DramParams& params,
-                    const DramKindParam& param);
 
 // Times are a data sheet's nanoseconds. They are rounded up to command clocks, as JEDEC standards ask. The
 // defaults are those of the kind gddr6_7000.
@@ -58,11 +49,21 @@ struct DramParams {
   std::string refresh = "all_bank";
   double refi = 1900.0, rfc = 120.3, rfc_bank = 60.4;
 
-  static constexpr auto channel_params() {
-    return std::tuple{
-        DramKindParam{"kind",
-                      "Selects the memory part whose data sheet sets the geometry, the clock and the times "
-                      "of the DRAM channels. A key that a file gives wins over the part."},
+  static ParamList params() {
+    ParamList rows = channel_params();
+    const ParamList times = time_params();
+    rows.insert(rows.end(), times.begin(), times.end());
+    return rows;
+  }
+  // Choice: the kind is read before all other keys, whatever their order in a file, so that a single key can
+  // change one number of the kind.
+  static ParamList channel_params() {
+    return {
+        preset<&apply_dram_kind>(
+            &DramParams::kind, "kind",
+            "Selects the memory part whose data sheet sets the geometry, the clock and the times "
+            "of the DRAM channels. A key that a file gives wins over the part.",
+            &dram_kinds),
         param(&DramParams::channels, "channels", "channel",
               "Number of memory partitions. Each has one DRAM channel and its L2 slices.", 0, 1024),
         policy(&DramParams::model, "model",
@@ -90,8 +91,8 @@ struct DramParams {
               "Clocks of the data bus from a read's data to a write's data.", 0, 1000),
         policy(&DramParams::scheduler, "scheduler", "Selects which waiting request a free bank gets.")};
   }
-  static constexpr auto time_params() {
-    return std::tuple{
+  static ParamList time_params() {
+    return {
         param(&DramParams::rcd, "rcd", "ns", "Time from activate to read (tRCD).", 0.0, 10000.0),
         param(&DramParams::rcd_write, "rcd_write", "ns", "Time from activate to write (tRCDWR).", 0.0,
               10000.0),
@@ -130,7 +131,6 @@ struct DramParams {
         param(&DramParams::rfc_bank, "rfc_bank", "ns",
               "Time from a refresh of one bank to an activate of that bank (tRFCpb).", 0.0, 1e5)};
   }
-  static constexpr auto params() { return std::tuple_cat(channel_params(), time_params()); }
   uint32_t atom_bytes() const { return bus_bytes * burst; }  // returns the bytes of one column command
 };
 

@@ -1,7 +1,6 @@
 // Implements the DRAM model `banked`: it simulates the banks of a channel, with row buffers and refresh,
 // command by command.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "memsys/dram/dram_channel.h"
@@ -15,7 +14,7 @@ class Banked final : public DramChannel {
   static constexpr const char* kDoc =
       "Banks, rows, command timing and refresh are modelled; `memory.dram.scheduler` orders the requests.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Banked(const Params&, const Context& context) : DramChannel(context) {}
 };

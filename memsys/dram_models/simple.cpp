@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "memsys/dram/dram_timing.h"
 #include "memsys/dram_model.h"
@@ -23,11 +22,11 @@ class Simple final : public DramModel {
   struct Params {
     double latency = 29.1;    // tRCD + CL of GDDR6-14000, as for a closed row
     double efficiency = 0.9;  // Choice: about the share that refresh and turnarounds leave to streams
-    static constexpr auto params() {
-      return std::tuple{param(&Params::latency, "latency", "ns",
-                              "Time from the beginning of a read's service to its first data.", 0.0, 1e5),
-                        param(&Params::efficiency, "efficiency", "ratio",
-                              "Share of the data bus's peak bandwidth that requests can use.", 0.01, 1.0)};
+    static ParamList params() {
+      return {param(&Params::latency, "latency", "ns",
+                    "Time from the beginning of a read's service to its first data.", 0.0, 1e5),
+              param(&Params::efficiency, "efficiency", "ratio",
+                    "Share of the data bus's peak bandwidth that requests can use.", 0.01, 1.0)};
     }
   };
 

@@ -1,7 +1,6 @@
 // Implements the DRAM scheduler `fcfs`: requests go in order of arrival over all banks. It is the baseline
 // for FR-FCFS.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -17,7 +16,7 @@ class Fcfs final : public DramScheduler {
   static constexpr const char* kDoc =
       "The oldest request of the channel goes first; younger ones wait even when their banks are free.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
 
   Fcfs(const Params&, Context context) : links_(context.capacity) {}

@@ -1,7 +1,6 @@
 // Implements the DRAM scheduler `frfcfs`: row hits go first, then the oldest request (FR-FCFS; Rixner et al.,
 // ISCA 2000).
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -19,8 +18,8 @@ class FrFcfs final : public DramScheduler {
       "A bank takes a request to its open row first, then its oldest request.";
   struct Params {
     uint32_t hit_cap = 0;
-    static constexpr auto params() {
-      return std::tuple{
+    static ParamList params() {
+      return {
           param(&Params::hit_cap, "hit_cap", "request",
                 "Number of row hits in a row that may overtake the oldest request of a bank. 0: no limit.", 0,
                 1 << 16)};

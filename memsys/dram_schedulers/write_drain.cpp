@@ -2,7 +2,6 @@
 // data bus turns less often.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -22,8 +21,8 @@ class WriteDrain final : public DramScheduler {
   struct Params {
     uint32_t high = 32;
     uint32_t low = 16;
-    static constexpr auto params() {
-      return std::tuple{
+    static ParamList params() {
+      return {
           param(
               &Params::high, "high", "request",
               "Number of waiting writes at which a drain begins. More than half of the queue counts as half.",

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -21,7 +20,7 @@ class Crossbar final : public Network {
       "The network is a switch that never blocks. Ports and credits limit the traffic.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
 
   Crossbar(const Params&, const Context& context)

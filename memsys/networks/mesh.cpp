@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,8 +28,8 @@ struct MeshParams {
   uint32_t entry_buffer = 34;  // guess: a credit's round trip between a port and its router
   uint32_t exit_buffer = 34;   // guess: a credit's round trip between a router and its port
 
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         param(&MeshParams::hop_latency, "hop_latency", "cycle",
               "Cycles from the departure of a message at a router to its possible departure at the next.", 1,
               1000),

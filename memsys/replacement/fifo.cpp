@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <span>
-#include <tuple>
 
 #include "base/registry.h"
 #include "memsys/replacement/slot_order.h"
@@ -16,7 +15,7 @@ class Fifo final : public Replacement {
   static constexpr const char* kName = "fifo";
   static constexpr const char* kDoc = "The line of the set that was filled first makes way.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
 
   Fifo(const Params&, const Context& context) : order_(context) {}

@@ -2,7 +2,6 @@
 // used lately.
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -21,7 +20,7 @@ class TreePlru final : public Replacement {
   static constexpr const char* kDoc =
       "A tree of one bit for each pair of halves approximates the least recently used line (pseudo-LRU).";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
 
   TreePlru(const Params&, const Context& context)

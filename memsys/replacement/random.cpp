@@ -1,6 +1,5 @@
 // Implements the replacement policy `random`: a seeded sequence draws the line of the set that makes way.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -26,9 +25,8 @@ class Random final : public Replacement {
   static constexpr const char* kDoc = "A line of the set that a seeded sequence draws makes way.";
   struct Params {
     uint32_t seed = 1;
-    static constexpr auto params() {
-      return std::tuple{
-          param(&Params::seed, "seed", "", "Number that selects the sequence of draws.", 0, ~0u)};
+    static ParamList params() {
+      return {param(&Params::seed, "seed", "", "Number that selects the sequence of draws.", 0, ~0u)};
     }
   };
 

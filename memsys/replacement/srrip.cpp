@@ -2,7 +2,6 @@
 // is expected latest makes way.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -23,9 +22,8 @@ class Srrip final : public Replacement {
       "prediction).";
   struct Params {
     uint32_t bits = 2;  // Jaleel et al.: 2 bits per line
-    static constexpr auto params() {
-      return std::tuple{
-          param(&Params::bits, "bits", "bit", "Bits of the expected interval that each line has.", 1, 7)};
+    static ParamList params() {
+      return {param(&Params::bits, "bits", "bit", "Bits of the expected interval that each line has.", 1, 7)};
     }
   };
 

@@ -98,8 +98,7 @@ void RunDirectory::write(const std::string& name, const std::string& bytes) cons
 void RunDirectory::remove_results(const std::vector<std::string>& saved) const {
   std::vector<std::string> names = saved_before(path_of("run.json"));
   names.insert(names.end(), saved.begin(), saved.end());
-  for (const auto& [name, entry] : Registry<StatWriter>::instance().entries())
-    names.push_back("stats." + std::string(name));
+  for (const std::string& format : Registry<StatWriter>::names()) names.push_back("stats." + format);
   names.insert(names.end(), std::begin(kResults), std::end(kResults));
   names.push_back(kFolder);
   remove("run.json");
@@ -112,8 +111,8 @@ void RunDirectory::write_image(const ImageView& image) const {
 }
 
 void RunDirectory::write_stats(const stats::Group& root) const {
-  for (const auto& [name, entry] : Registry<StatWriter>::instance().entries())
-    write("stats." + std::string(name), entry.make_default({})->write(root));
+  for (const std::string& format : Registry<StatWriter>::names())
+    write("stats." + format, Registry<StatWriter>::instance().entry(format).make_default({})->write(root));
 }
 
 void RunDirectory::write_config(const std::vector<ParamInfo>& params, const std::string& title) const {

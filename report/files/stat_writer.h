@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
-#include <tuple>
 
 #include "base/registry.h"
 #include "base/stats.h"
@@ -16,7 +15,7 @@ class StatWriter {
   struct Context {};
   // Formats take no parameters.
   struct NoParams {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   virtual ~StatWriter() = default;
   virtual std::string write(const stats::Group& root) const = 0;

@@ -62,8 +62,8 @@ class Deferred final : public AnyHitMode {
       "Rays gather candidates in tables; shaders run over them after the traversal.";
   struct Params {
     uint32_t table_entries = 8;  // Choice: Vulkan-Sim has 1,000 and stops the run when a table is full.
-    static constexpr auto params() {
-      return std::tuple{param(
+    static ParamList params() {
+      return {param(
           &Params::table_entries, "table_entries", "candidate",
           "Number of candidates that a ray's table holds. When it is full, their shaders run before the "
           "traversal goes on.",

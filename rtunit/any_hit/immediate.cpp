@@ -1,7 +1,6 @@
 // Implements the any-hit mode `immediate`: a ray stops at each candidate, the shader runs, and the ray goes
 // on. It is shorter when the candidate was accepted.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/check.h"
 #include "base/registry.h"
@@ -16,7 +15,7 @@ class Immediate final : public AnyHitMode {
   static constexpr std::string_view kDoc = "A ray stops at each candidate until its shader has run.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Immediate(Params, Context) {}
 

@@ -1,7 +1,6 @@
 // Implements the child order `first_internal`: the ray goes down the first internal child and visits the
 // others from the last to the first, as in Vulkan-Sim 2.0.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/child_order.h"
@@ -16,7 +15,7 @@ class FirstInternal final : public ChildOrder {
       "The first internal child that is hit comes first. The other children follow from the last to the "
       "first, as in Vulkan-Sim.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   FirstInternal(Params, Context) {}
 

@@ -1,7 +1,6 @@
 // Implements the child order `index_order`: the ray visits the children as they lie in the node, for a unit
 // that cannot sort.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/child_order.h"
@@ -15,7 +14,7 @@ class IndexOrder final : public ChildOrder {
   static constexpr std::string_view kDoc =
       "The children follow each other as they lie in the node, whatever their distance.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   IndexOrder(Params, Context) {}
 

@@ -1,7 +1,6 @@
 // Implements the child order `near_first`: the ray visits the children by distance, as in hardware that sorts
 // its hits.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/child_order.h"
@@ -16,7 +15,7 @@ class NearFirst final : public ChildOrder {
       "The nearest child comes first. Of equally near children, the one that lies first in the node comes "
       "first.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   NearFirst(Params, Context) {}
 

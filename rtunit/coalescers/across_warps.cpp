@@ -1,7 +1,6 @@
 // Implements the coalescer `across_warps`: all lanes in the unit that wait to ask for the same node share its
 // fetch.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
@@ -15,7 +14,7 @@ class AcrossWarps final : public Coalescer {
   static constexpr std::string_view kDoc =
       "Lanes of all warps in the unit that wait to ask for the same node share a fetch.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   AcrossWarps(Params, Context) {}
 

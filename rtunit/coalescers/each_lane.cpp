@@ -1,6 +1,5 @@
 // Implements the coalescer `each_lane`: every lane fetches for itself.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
@@ -13,7 +12,7 @@ class EachLane final : public Coalescer {
   static constexpr std::string_view kName = "each_lane";
   static constexpr std::string_view kDoc = "Every lane fetches its node for itself.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   EachLane(Params, Context) {}
 

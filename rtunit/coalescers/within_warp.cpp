@@ -1,7 +1,6 @@
 // Implements the coalescer `within_warp`: lanes of one warp that want the same node share its fetch, as in
 // the published simulators.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/coalescer.h"
@@ -15,7 +14,7 @@ class WithinWarp final : public Coalescer {
   static constexpr std::string_view kDoc = "Lanes of one warp that want the same node share a fetch.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   WithinWarp(Params, Context) {}
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 
 #include "base/registry.h"
 
@@ -18,7 +17,7 @@ class Bvh2Format final : public NodeFormat {
   static constexpr std::string_view kDoc =
       "Internal nodes have 64 B and two children, whose planes are in single precision.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Bvh2Format(Params, Context) {}
 

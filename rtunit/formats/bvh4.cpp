@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 
 #include "base/registry.h"
 
@@ -18,7 +17,7 @@ class Bvh4Format final : public NodeFormat {
   static constexpr std::string_view kDoc =
       "Internal nodes have 128 B and four children, whose planes are in single precision.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Bvh4Format(Params, Context) {}
 

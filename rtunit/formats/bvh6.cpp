@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 
 #include "base/registry.h"
 
@@ -19,7 +18,7 @@ class Bvh6Format final : public NodeFormat {
       "Internal nodes have 64 B and six children, whose planes have 8 bits and one power-of-two step per "
       "axis.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Bvh6Format(Params, Context) {}
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 
 #include "base/registry.h"
 
@@ -20,7 +19,7 @@ class Bvh8Format final : public NodeFormat {
       "Internal nodes have 80 B and eight children, whose planes have 8 bits and one power-of-two step per "
       "axis. Leaves lie apart from them.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Bvh8Format(Params, Context) {}
 

@@ -1,7 +1,6 @@
 // Implements the ray scheduler `oldest_first`: the warp that entered the RT unit first sends first, as in the
 // published simulators.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
@@ -15,7 +14,7 @@ class OldestFirst final : public RayScheduler {
   static constexpr std::string_view kDoc = "The warp that has been in the unit longest sends first.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   OldestFirst(Params, Context) {}
 

@@ -1,6 +1,5 @@
 // Implements the ray scheduler `round_robin`: the warps in the unit take turns at the request port.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
@@ -13,7 +12,7 @@ class RoundRobin final : public RayScheduler {
   static constexpr std::string_view kName = "round_robin";
   static constexpr std::string_view kDoc = "The next ready warp after the one that sent last sends.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   RoundRobin(Params, Context) {}
 

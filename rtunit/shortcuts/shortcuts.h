@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <tuple>
 
 #include "base/params.h"
 
@@ -21,8 +20,8 @@ struct Shortcuts {
   uint32_t store_latency = 0;                           // 0: a write ends when the L1 has taken it.
   uint32_t header_latency = 4, descriptor_latency = 4;  // -gpgpu_rt_intersection_latency, entries 0 and 3
 
-  static constexpr auto params() {
-    return std::tuple{
+  static ParamList params() {
+    return {
         flag(&Shortcuts::same_cycle_hits, "same_cycle_hits",
              "True: the unit takes answers of the L1 also after it has sent the requests of a cycle, so that "
              "a hit takes no time with memory.l1.hit_latency = 0."),

@@ -1,6 +1,5 @@
 // Implements the stack model `full`: every entry of a ray is on chip.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
@@ -14,7 +13,7 @@ class Full final : public StackModel {
   static constexpr std::string_view kDoc = "A ray keeps every entry on chip.";
   static constexpr bool kInIntervalModel = true;
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Full(Params, Context) {}
 

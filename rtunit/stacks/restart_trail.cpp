@@ -1,7 +1,6 @@
 // Implements the stack model `restart_trail`: a short stack forgets its oldest entries, and the ray finds
 // them again from the root.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
@@ -20,9 +19,9 @@ class RestartTrail final : public StackModel {
       "A ray keeps its newest entries on chip and finds the others again from the root.";
   struct Params {
     uint32_t entries = 8;  // Choice: as many as `short_stack` has, to compare them
-    static constexpr auto params() {
-      return std::tuple{param(&Params::entries, "entries", "entry",
-                              "Number of stack entries that a ray has on chip.", 1, kStackEntries)};
+    static ParamList params() {
+      return {param(&Params::entries, "entries", "entry", "Number of stack entries that a ray has on chip.",
+                    1, kStackEntries)};
     }
   };
   RestartTrail(Params params, Context) : params_(params) {}

@@ -1,7 +1,6 @@
 // Implements the stack model `short_stack`: the top of the stack is on chip and the rest in local memory.
 // Entries move a sector at a time.
 // SPDX-License-Identifier: Apache-2.0
-#include <tuple>
 
 #include "base/registry.h"
 #include "rtunit/stack_model.h"
@@ -21,11 +20,10 @@ class ShortStack final : public StackModel {
     // This is the smallest stack of AMD's DS_BVH_STACK instructions (RDNA 3 ISA guide, 2023: 8, 16, 32 or 64
     // entries).
     uint32_t entries = 8;
-    static constexpr auto params() {
-      return std::tuple{
-          param(&Params::entries, "entries", "entry",
-                "Number of stack entries that a ray has on chip. Four entries spill or fill at a time.",
-                kEntriesPerSector, kStackEntries)};
+    static ParamList params() {
+      return {param(&Params::entries, "entries", "entry",
+                    "Number of stack entries that a ray has on chip. Four entries spill or fill at a time.",
+                    kEntriesPerSector, kStackEntries)};
     }
   };
   ShortStack(Params params, Context) : params_(params) {}

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 #include <optional>
+#include <utility>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -256,8 +258,8 @@ std::unique_ptr<NodeFormat> make_format(std::string_view name) {
   return Registry<NodeFormat>::instance().entry(name).make_default({});
 }
 std::unique_ptr<NodeFormat> make_format(FormatId id) {
-  for (const auto& [name, entry] : Registry<NodeFormat>::instance().entries())
-    if (auto format = entry.make_default({}); format->id() == id) return format;
+  for (const std::string& name : Registry<NodeFormat>::names())
+    if (auto format = make_format(name); format->id() == id) return format;
   return nullptr;
 }
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "base/registry.h"
@@ -46,12 +45,12 @@ struct Instance {
 struct BuildOptions {
   PolicyChoice<NodeFormat> format{"bvh6"};  // Vulkan-Sim 2.0
   bool pair_triangles = true;
-  static constexpr auto params() {
-    return std::tuple{policy(&BuildOptions::format, "format",
-                             "Selects how internal nodes are written, and how many children they have."),
-                      flag(&BuildOptions::pair_triangles, "pair_triangles",
-                           "True: two neighbouring triangles of a geometry share a leaf where that adds no "
-                           "surface area. False: each triangle has a leaf of its own.")};
+  static ParamList params() {
+    return {policy(&BuildOptions::format, "format",
+                   "Selects how internal nodes are written, and how many children they have."),
+            flag(&BuildOptions::pair_triangles, "pair_triangles",
+                 "True: two neighbouring triangles of a geometry share a leaf where that adds no "
+                 "surface area. False: each triangle has a leaf of its own.")};
   }
 };
 

@@ -96,7 +96,7 @@ class Plugin(GlintTest):
         folder.mkdir()
         (folder / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(embed LANGUAGES CXX)\nfind_package(glint REQUIRED)\n"
                                                "add_executable(embed main.cpp)\ntarget_link_libraries(embed PRIVATE glint::pipeline)\n")
-        (folder / "main.cpp").write_text('#include <cstdio>\n#include "base/policy_kinds.h"\n#include "pipeline/render.h"\nint main() {\n'
+        (folder / "main.cpp").write_text('#include <cstdio>\n#include "base/registry.h"\n#include "pipeline/render.h"\nint main() {\n'
                                          '  std::printf("%d %zu", int(glint::scenes::load_scene("CORNELL", {}).triangles()), glint::all_policies().size());\n}\n')
         triangles, policies = subprocess.run([self.configure_and_build(folder) / "embed"], capture_output=True, text=True, check=True).stdout.split()
         self.assertEqual(triangles, "12")

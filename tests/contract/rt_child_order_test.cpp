@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <initializer_list>
+#include <utility>
 
 #include "base/registry.h"
 #include "rtunit/child_order.h"

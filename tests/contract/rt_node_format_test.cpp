@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "base/registry.h"

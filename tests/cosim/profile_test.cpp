@@ -1,6 +1,7 @@
 // Tests that profile, time series and conservation of the machine add up, and that watching changes nothing.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "pipeline/conservation.h"
 #include "pipeline/run_profile.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"

@@ -1,6 +1,7 @@
 // Tests that stepping, skipping and threads give the same machine under every preset and timing mechanism.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <fmt/format.h>
 #include <functional>
 
 #include "pipeline/scene_world.h"

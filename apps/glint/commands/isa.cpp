@@ -1,5 +1,6 @@
 // Declares `glint isa [OP]`, which prints the reference of the instruction set from its table.
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/options/command_line.h"

@@ -7,7 +7,7 @@
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 #include "isa/op_row.h"
 #include "report/metrics/metrics.h"
 #include "report/metrics/vulkan_sim.h"

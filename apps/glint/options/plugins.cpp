@@ -11,7 +11,7 @@
 #include "base/diagnostics.h"
 #include "base/file_store.h"
 #include "base/plugin_stamp.h"
-#include "base/policy_kinds.h"
+#include "base/registry.h"
 
 namespace glint::app {
 namespace {

@@ -73,7 +73,7 @@ std::vector<Cycle> at_once(const char* settings, uint32_t count) {
   config.add_text("test", settings);
   Diagnostics diagnostics;
   ConfigTable table = config.root(diagnostics);
-  Registry<DramModel>::instance().entry("simple").read(table, choice);
+  Registry<DramModel>::instance().entry("simple").read(table, &choice);
   REQUIRE_FALSE(diagnostics.has_errors());
   DramParams params;
   params.clock_mhz = 1000.0;

@@ -66,7 +66,7 @@ TEST_CASE("a hit cap lets the oldest request through after that many row hits") 
   config.add_text("test", "hit_cap = 2\n");
   Diagnostics diagnostics;
   ConfigTable table = config.root(diagnostics);
-  Registry<DramScheduler>::instance().entry("frfcfs").read(table, choice);
+  Registry<DramScheduler>::instance().entry("frfcfs").read(table, &choice);
   REQUIRE_FALSE(diagnostics.has_errors());
   const auto scheduler = choice.make({1, 8});
   scheduler->add(0, {0, 9, 0, false});
@@ -83,7 +83,7 @@ TEST_CASE("write_drain keeps writes back until enough wait, drains to its lower 
   config.add_text("test", "high = 3\nlow = 1\n");
   Diagnostics diagnostics;
   ConfigTable table = config.root(diagnostics);
-  Registry<DramScheduler>::instance().entry("write_drain").read(table, choice);
+  Registry<DramScheduler>::instance().entry("write_drain").read(table, &choice);
   REQUIRE_FALSE(diagnostics.has_errors());
   const auto scheduler = choice.make({1, 16});
   for (uint32_t i = 0; i < 2; ++i) scheduler->add(i, {0, 5, i, true});

@@ -28,7 +28,7 @@ PolicyChoice<Network> chosen(const std::string& name, const std::string& params 
   config.add_text("test", params);
   Diagnostics diagnostics;
   ConfigTable table = config.root(diagnostics);
-  Registry<Network>::instance().entry(name).read(table, choice);
+  Registry<Network>::instance().entry(name).read(table, &choice);
   REQUIRE_FALSE(diagnostics.has_errors());
   return choice;
 }

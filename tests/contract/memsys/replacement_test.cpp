@@ -22,7 +22,7 @@ PolicyChoice<Replacement> chosen(const std::string& name, const std::string& par
   config.add_text("test", params);
   Diagnostics diagnostics;
   ConfigTable table = config.root(diagnostics);
-  Registry<Replacement>::instance().entry(name).read(table, choice);
+  Registry<Replacement>::instance().entry(name).read(table, &choice);
   REQUIRE_FALSE(diagnostics.has_errors());
   return choice;
 }

@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <fmt/format.h>
 #include <map>
 #include <memory>
 #include <string>

@@ -25,9 +25,7 @@ class Dog final : public Animal {
   static constexpr const char* kDoc = "Barks.";
   struct Params {
     uint32_t factor = 3;
-    static constexpr auto params() {
-      return std::tuple{param(&Params::factor, "factor", "", "Speed a leg.", 1, 9)};
-    }
+    static ParamList params() { return {param(&Params::factor, "factor", "", "Speed a leg.", 1, 9)}; }
   };
   Dog(const Params& params, Context context) : speed_(int(params.factor) * context.legs) {}
   int speed() const override { return speed_; }
@@ -40,7 +38,7 @@ class Snail final : public Animal {
   static constexpr const char* kName = "snail";
   static constexpr const char* kDoc = "Does not.";
   struct Params {
-    static constexpr auto params() { return std::tuple{}; }
+    static ParamList params() { return {}; }
   };
   Snail(Params, Context) {}
   int speed() const override { return 1; }
@@ -51,19 +49,16 @@ const Register<Animal, Dog> dog;
 
 struct Inner {
   double ratio = 0.5;
-  static constexpr auto params() {
-    return std::tuple{param(&Inner::ratio, "ratio", "fraction", "A share.", 0.0, 1.0)};
-  }
+  static ParamList params() { return {param(&Inner::ratio, "ratio", "fraction", "A share.", 0.0, 1.0)}; }
 };
 struct Outer {
   uint32_t warps = 32;
   bool fast = false;
   Inner inner;
   PolicyChoice<Animal> animal{"snail"};
-  static constexpr auto params() {
-    return std::tuple{param(&Outer::warps, "warps", "warp", "Warps.", 1, 64),
-                      flag(&Outer::fast, "fast", "Go fast."), section(&Outer::inner, "inner", "Inside."),
-                      policy(&Outer::animal, "animal", "Which.")};
+  static ParamList params() {
+    return {param(&Outer::warps, "warps", "warp", "Warps.", 1, 64), flag(&Outer::fast, "fast", "Go fast."),
+            section(&Outer::inner, "inner", "Inside."), policy(&Outer::animal, "animal", "Which.")};
   }
 };
 

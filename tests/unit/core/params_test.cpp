@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/params.h"
 
+#include <tuple>
 #include <vector>
 
 #include "tests/support/catch.h"

@@ -3,6 +3,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "base/registry.h"
 #include "memsys/address_map.h"
