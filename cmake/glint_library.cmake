@@ -7,7 +7,8 @@
 # EXCEPT are files that the caller adds under conditions of its own. PRECOMPILE are headers of ours that most
 # files of the folder include: they are parsed once, with cmake/precompiled.h. PRECOMPILED_BY names another folder
 # whose precompiled headers serve here too. COLD says that the folder takes no part in the machines' loops: it is
-# optimised for a quick build, and, with GLINT_UNITY, compiled several files at a time.
+# optimised for a quick build. With GLINT_UNITY several files of a folder are compiled at a time, except policies: names in
+# anonymous namespaces are therefore unique within a folder.
 function(glint_library name)
   cmake_parse_arguments(ARG "COLD" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT;PRECOMPILE;PRECOMPILED_BY" ${ARGN})
   list(TRANSFORM ARG_DEPENDS PREPEND glint::)
@@ -31,6 +32,8 @@ function(glint_library name)
   endif()
   if(ARG_COLD)
     glint_cold(glint_${name})
+  else()
+    set_target_properties(glint_${name} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   endif()
   if(ARG_POLICIES)
     glint_glob(policies *.cpp ${ARG_POLICIES})
@@ -54,7 +57,7 @@ function(glint_glob variable pattern)
   set(${variable} ${found} PARENT_SCOPE)
 endfunction()
 
-# glint_cold(target) does what COLD says above. Names in anonymous namespaces are therefore unique within a folder.
+# glint_cold(target) does what COLD says above. Large batches pay most where headers of packages are heavy.
 function(glint_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 12)

@@ -22,7 +22,9 @@ using isa::HitObjectValue;
 
 // Names the operands of ho.miss, and of ho.hit up to the SBT stride. Origin, tmin, direction and tmax follow.
 enum MissOperand : size_t { kMissIndex = 1, kMissRay };
-enum HitOperand : size_t { kStructure = 1, kInstance, kPrimitive, kGeometry, kKind, kOffset, kStride };
+struct HitOperand {
+  enum Slot : size_t { kStructure = 1, kInstance, kPrimitive, kGeometry, kKind, kOffset, kStride };
+};
 
 rt::Ray ray_of(const WarpContext& warp, const isa::Inst& inst, size_t first, int lane) {
   rt::Ray ray;
@@ -186,17 +188,17 @@ bool HitObjects::run_corner(WarpContext& warp, const isa::Inst& inst) {
 bool HitObjects::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_stride, int lane,
                           HitObject& object) {
   const auto value = [&](size_t operand) { return read_word(warp.regs, inst, operand, lane); };
-  const Address structure = read_address(warp.regs, inst, kStructure, lane);
-  const Address at = find_instance(*world_.memory, structure, value(kInstance));
+  const Address structure = read_address(warp.regs, inst, HitOperand::kStructure, lane);
+  const Address at = find_instance(*world_.memory, structure, value(HitOperand::kInstance));
   if (at == 0) {
     object = {};
     return faults_.let_pass(warp, lane, FaultKind::Structure, [&] {
-      return fmt::format("makes a hit object of instance {}, which {:#x} does not hold: {}", value(kInstance),
-                         structure, whereabouts(*world_.memory, structure, 1));
+      return fmt::format("makes a hit object of instance {}, which {:#x} does not hold: {}",
+                         value(HitOperand::kInstance), structure, whereabouts(*world_.memory, structure, 1));
     });
   }
   const rt::InstanceLeaf& leaf = world_.memory->view<rt::InstanceLeaf>(at, 1)[0];
-  const size_t ray = kOffset + (has_stride ? 2 : 1);
+  const size_t ray = HitOperand::kOffset + (has_stride ? 2 : 1);
   object = {HitObject::Type::Hit,
             ray_of(warp, inst, ray, lane),
             {},
@@ -207,18 +209,19 @@ bool HitObjects::make_hit(WarpContext& warp, const isa::Inst& inst, bool has_str
   load_attributes(warp, value(ray + kRayOperands), lane, object);
   rt::Hit& hit = object.hit;
   hit.t = object.ray.t_max;
-  hit.kind = value(kKind);
+  hit.kind = value(HitOperand::kKind);
   hit.u = as_float(object.attributes[0]);
   hit.v = as_float(object.attributes[1]);
   hit.instance = leaf.instance;
-  hit.geometry = value(kGeometry);
-  hit.primitive = value(kPrimitive);
+  hit.geometry = value(HitOperand::kGeometry);
+  hit.primitive = value(HitOperand::kPrimitive);
   hit.custom_index = leaf.custom_index();
   hit.sbt_record = leaf.sbt_offset();
   hit.instance_leaf = at;
-  object.ray.sbt_offset = value(kOffset) & 15;
-  object.ray.sbt_stride = has_stride ? value(kStride) & 15 : 0;
-  object.record = has_stride ? hit_record(world_, object.ray, hit) : world_.table.hit.number(value(kOffset));
+  object.ray.sbt_offset = value(HitOperand::kOffset) & 15;
+  object.ray.sbt_stride = has_stride ? value(HitOperand::kStride) & 15 : 0;
+  object.record =
+      has_stride ? hit_record(world_, object.ray, hit) : world_.table.hit.number(value(HitOperand::kOffset));
   return true;
 }
 

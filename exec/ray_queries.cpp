@@ -18,7 +18,9 @@ using rt::RayState;
 using rt::RayStatus;
 
 // Names the operands of rq.initialize.
-enum InitializeOperand : size_t { kQuery, kStructure, kFlags, kMask, kRay };
+struct InitializeOperand {
+  enum Slot : size_t { kQuery, kStructure, kFlags, kMask, kRay };
+};
 
 uint32_t kind_of_hit(const RayState& state, bool committed) {
   if (!committed) return state.status == RayStatus::NeedsIntersection;
@@ -140,10 +142,10 @@ bool RayQueries::begin(WarpContext& warp, const isa::Inst& inst, RayState* state
     RayState& state = states[lane];
     rt::Ray& ray = state.ray;
     ray = {};
-    ray.structure = read_address(warp.regs, inst, kStructure, lane);
-    ray.flags = read_word(warp.regs, inst, kFlags, lane);
-    ray.cull_mask = read_word(warp.regs, inst, kMask, lane) & 0xff;
-    read_ray(warp.regs, inst, kRay, lane, ray);
+    ray.structure = read_address(warp.regs, inst, InitializeOperand::kStructure, lane);
+    ray.flags = read_word(warp.regs, inst, InitializeOperand::kFlags, lane);
+    ray.cull_mask = read_word(warp.regs, inst, InitializeOperand::kMask, lane) & 0xff;
+    read_ray(warp.regs, inst, InitializeOperand::kRay, lane, ray);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
     if (!rt::begin(state, *world_.memory) &&
         !ray_faults_.let_pass_structure(warp, lane, "starts a ray query in", ray.structure))

@@ -21,25 +21,27 @@ using rt::RayStatus;
 namespace {
 
 // Names the operands of rt.trace after the answer predicate and the structure.
-enum TraceOperand : size_t {
-  kFlags = 2,
-  kMask,
-  kSbtOffset,
-  kSbtStride,
-  kMiss,
-  kRay,
-  kPayload = kRay + kRayOperands
+struct TraceOperand {
+  enum Slot : size_t {
+    kFlags = 2,
+    kMask,
+    kSbtOffset,
+    kSbtStride,
+    kMiss,
+    kRay,
+    kPayload = kRay + kRayOperands
+  };
 };
 
 void set_ray(const isa::Warp& regs, const isa::Inst& inst, int lane, rt::Ray& ray) {
   const auto value = [&](size_t operand) { return read_word(regs, inst, operand, lane); };
   ray.structure = read_address(regs, inst, 1, lane);
-  ray.flags = value(kFlags);
-  ray.cull_mask = value(kMask) & 0xff;
-  ray.sbt_offset = value(kSbtOffset) & 15;  // by SPV_KHR_ray_tracing only the 4 low bits count
-  ray.sbt_stride = value(kSbtStride) & 15;
-  ray.miss_index = value(kMiss) & 0xffff;  // only the 16 low bits count
-  read_ray(regs, inst, kRay, lane, ray);
+  ray.flags = value(TraceOperand::kFlags);
+  ray.cull_mask = value(TraceOperand::kMask) & 0xff;
+  ray.sbt_offset = value(TraceOperand::kSbtOffset) & 15;  // by SPV_KHR_ray_tracing only the 4 low bits count
+  ray.sbt_stride = value(TraceOperand::kSbtStride) & 15;
+  ray.miss_index = value(TraceOperand::kMiss) & 0xffff;  // only the 16 low bits count
+  read_ray(regs, inst, TraceOperand::kRay, lane, ray);
 }
 
 bool needs_shader(const rt::RayState& state) {
@@ -91,7 +93,7 @@ bool Rays::open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_o
 
 bool Rays::trace(WarpContext& warp, const isa::Inst& inst) {
   const LaneMask exec = warp.regs.exec;
-  if (!open_trace(warp, inst, kPayload)) return false;
+  if (!open_trace(warp, inst, TraceOperand::kPayload)) return false;
   TraceFrame& frame = warp.frame();
   for (LaneMask lanes = exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);

@@ -17,6 +17,9 @@
 
 namespace glint::rt {
 
+// The largest number of children of a node in any format.
+inline constexpr uint32_t kMaxWidth = 16;
+
 // Holds a tree as the builder hands it over. Node 0 is the root and always internal. Leaves point to their
 // bytes in `leaf_bytes`.
 struct BuildTree {
@@ -49,7 +52,7 @@ class NodeFormat {
   struct Context {};
   virtual ~NodeFormat() = default;
   virtual FormatId id() const = 0;
-  // Returns the largest number of children of a node, at least 2.
+  // Returns the largest number of children of a node, 2 to kMaxWidth.
   virtual uint32_t width() const = 0;
   // Returns the bytes of an internal node, which a ray fetches whole. They are a multiple of kBlockBytes.
   virtual uint32_t node_bytes() const = 0;

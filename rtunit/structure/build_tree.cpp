@@ -17,7 +17,6 @@
 namespace glint::rt {
 namespace {
 
-constexpr uint32_t kMaxWidth = 16;
 constexpr uint32_t kMaxDepth = 60;  // binary levels: the builder's own limit for skewed input
 
 // Holds a node in the builder's memory. It is a leaf when `num_children` is 0.

@@ -17,7 +17,6 @@ namespace glint::rt {
 namespace {
 
 constexpr size_t kMaxErrors = 100;
-constexpr uint32_t kMaxWidth = 16;
 
 bool contains(const Bounds& outer, const Bounds& inner) {
   for (size_t a = 0; a < 3; ++a)
