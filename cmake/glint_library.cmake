@@ -4,13 +4,13 @@
 # and headers are the files of its folder and of its FLOORS, so a file is found where it lies and is in no list.
 # DEPENDS are folders of ours. LINKS are libraries from packages; the folder's users see them only if its headers
 # include them. POLICIES are folders in which each file registers one policy and nothing else refers to it.
-# EXCEPT are files that the caller adds under conditions of its own. PRECOMPILE are headers of ours that most
-# files of the folder include: they are parsed once, with cmake/precompiled.h. PRECOMPILED_BY names another folder
-# whose precompiled headers serve here too. COLD says that the folder takes no part in the machines' loops: it is
-# optimised for a quick build. With GLINT_UNITY several files of a folder are compiled at a time, except policies: names in
-# anonymous namespaces are therefore unique within a folder.
+# EXCEPT are files that the caller adds under conditions of its own. PRECOMPILE, in `base`, are its headers
+# that are parsed once for all folders (glint_precompile); headers of other folders cost more to write and to load than
+# to parse. COLD says that the folder takes no part in the machines' loops: it is optimised for a quick build. With
+# GLINT_UNITY several files of a folder are compiled at a time, except policies: names in anonymous namespaces are
+# therefore unique within a folder.
 function(glint_library name)
-  cmake_parse_arguments(ARG "COLD" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT;PRECOMPILE;PRECOMPILED_BY" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT;PRECOMPILE" ${ARGN})
   list(TRANSFORM ARG_DEPENDS PREPEND glint::)
   glint_glob(sources *.cpp . ${ARG_FLOORS})
   glint_glob(headers *.h . ${ARG_FLOORS} ${ARG_POLICIES})
