@@ -18,8 +18,8 @@ namespace glint::stats {
 class Group;
 class Visitor;
 
-// A named value with a unit and a description. A member registers itself with its Group, so a statistic
-// appears in every output format once it is declared, and no other list names it.
+// Holds what every statistic has: a name, a unit and a description. A member registers itself with its Group,
+// so a statistic appears in every output format once it is declared, and no other list names it.
 class Stat {
  public:
   Stat(Group* group, std::string_view name, std::string_view unit, std::string_view doc);
@@ -54,7 +54,8 @@ class Counter final : public Stat {
   uint64_t value_ = 0;
 };
 
-// The quotient of two counters. It is computed when it is read, so it cannot disagree with the counters.
+// Declares the quotient of two counters. It is computed when it is read, so it cannot disagree with the
+// counters.
 class Ratio final : public Stat {
  public:
   Ratio(Group* group, std::string_view name, std::string_view unit, const Counter& num, const Counter& den,
@@ -68,8 +69,8 @@ class Ratio final : public Stat {
   const Counter& den_;
 };
 
-// A value that is computed, when it is read, from anything else in the unit, such as a sum over instances or
-// a peak.
+// Declares a value that is computed, when it is read, from anything else in the unit, such as a sum over
+// instances or a peak.
 class Value final : public Stat {
  public:
   Value(Group* group, std::string_view name, std::string_view unit, std::function<double()> read,
@@ -117,7 +118,7 @@ class Histogram final : public Stat {
   std::vector<uint64_t> counts_;
 };
 
-// The part of a Breakdown that a visitor sees, the same for every enum.
+// Holds the part of a Breakdown that a visitor sees. It is the same for every enum.
 class BreakdownBase : public Stat {
  public:
   using Stat::Stat;

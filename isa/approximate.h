@@ -46,9 +46,9 @@ inline constexpr uint32_t kOneBits = 0x3f80'0000;
   return 2 * leading * leading + row(10) + row(11) + row(12) + row(13) + row(14) + row(15) + row(16);
 }
 
-// A table with one word per segment, so that a lane reads memory once: C0 above bit 36, |C1| in 20 bits above
-// bit 16, and |C2|. All segments of a function have the same signs, and C1 and C2 are multiples of 2^kStep1
-// and 2^kStep2.
+// Holds a table with one word per segment, so that a lane reads memory once. The word has C0 above bit 36,
+// |C1| in 20 bits above bit 16, and |C2|. All segments of a function have the same signs, and C1 and C2 are
+// multiples of 2^kStep1 and 2^kStep2.
 template <size_t kSize, int kSign1, int kSign2, int kStep1, int kStep2, int kBiasValue>
 struct Table {
   static constexpr int64_t kBias = kBiasValue;

@@ -92,8 +92,9 @@ struct Joined {
 template <Text... kParts>
 inline constexpr std::string_view joined{Joined<kParts...>::kText.data(), Joined<kParts...>::kLength};
 
-// A source operand of type T, which reads the bits of one lane. A 64-bit operand is two rows, low half first.
-// A 16-bit operand (integer, Half, Bfloat) is the low half of a row, whose upper half means nothing.
+// Gives a handler a source operand of type T: it reads the bits of one lane. A 64-bit operand is two rows,
+// low half first. A 16-bit operand (integer, Half, Bfloat) is the low half of a row, whose upper half means
+// nothing.
 template <class T>
 struct Source {
   const uint32_t* low;
@@ -110,7 +111,7 @@ struct Source {
   }
 };
 
-// A predicate operand, which reads the bit of one lane.
+// Gives a handler a predicate operand: it reads the bit of one lane.
 template <>
 struct Source<bool> {
   LaneMask mask;
@@ -217,7 +218,7 @@ template <class R>
 }
 
 // Handles a value op: applies F to the sources of types A... lane by lane. F's result type is the
-// destination: bool a predicate, 8 bytes a register pair, 4 bytes a register.
+// destination: a bool goes to a predicate, 8 bytes go to a register pair, and 4 bytes go to a register.
 template <class F, class... A>
 [[gnu::flatten, gnu::noinline]] void run_value(Warp& warp, const Inst& inst, const OpRow& row) {
   using R = decltype(F{}(A{}...));
@@ -256,8 +257,8 @@ inline constexpr bool is_two = false;
 template <class A, class B>
 inline constexpr bool is_two<Two<A, B>> = true;
 
-// Instruction-mix class of a value op. Divisions and roots are sequences around the special-function unit:
-// GPGPU-Sim's SFU_OP class, and so the paper's.
+// Returns the instruction-mix class of a value op. Divisions and roots are sequences around the
+// special-function unit: GPGPU-Sim puts them into its class SFU_OP, and so does the paper.
 constexpr Class class_of(Unit unit) {
   return unit == Unit::Sfu || unit == Unit::FpDiv || unit == Unit::IntDiv || unit == Unit::Fp64Div
              ? Class::Sfu
@@ -273,7 +274,7 @@ constexpr OperandKind destination_kind() {
   return std::is_same_v<T, bool> ? DstPred : sizeof(T) == 8 ? Dst64 : Dst32;
 }
 
-// A row whose handler applies `f` to sources of types A...; units, documentation and examples as OpRow says.
+// Makes a row whose handler applies `f` to sources of types A.... OpRow says what the other arguments mean.
 // When `f` gives Two<R, S>, the row has two destinations.
 template <class... A, class F>
 constexpr OpRow value_op(std::string_view name, Unit unit, std::string_view doc, F, Examples examples) {
@@ -307,7 +308,7 @@ constexpr OpRow ternary(std::string_view name, Unit unit, std::string_view doc, 
   return value_op<A, A, A>(name, unit, doc, f, examples);
 }
 
-// Handler of an op that is all effect: the machine does everything.
+// Handles an op that is only an effect: the machine does everything.
 void run_nothing(Warp& warp, const Inst& inst, const OpRow& row);
 
 constexpr OpRow effect_op(std::string_view name, Class klass, Unit unit, Effect effect, Operands operands,

@@ -38,8 +38,8 @@ struct SpirvLine {
   Line line;
 };
 
-// The layout of the constant bank, on which compiler and pipeline agree. The descriptor of (set, binding) is
-// at set * kSetBytes + binding * kDescriptorBytes: { u64 address or handle, u64 bytes or count }.
+// Defines the layout of the constant bank, on which compiler and pipeline agree. The descriptor of (set,
+// binding) is at set * kSetBytes + binding * kDescriptorBytes: { u64 address or handle, u64 bytes or count }.
 inline constexpr uint32_t kDescriptorBytes = 16;
 inline constexpr uint32_t kBindingsPerSet = 64;
 inline constexpr uint32_t kSetBytes = kBindingsPerSet * kDescriptorBytes;  // 1 KiB

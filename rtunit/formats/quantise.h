@@ -62,7 +62,7 @@ inline void quantise(std::span<const Bounds> boxes, size_t axis, Grid& grid, Qua
   const double step = (double(high) - low) / 255;
   int exponent = step > 0 ? std::ilogb(step) + 127 : 1;
   for (exponent = exponent < 1 ? 1 : exponent;; ++exponent) {
-    GLINT_CHECK(exponent <= 254, "a box of {} to {} does not fit in 8 bits a plane", low, high);
+    GLINT_CHECK(exponent <= 254, "a box of {} to {} does not fit in 8 bits per plane", low, high);
     grid.exponent[axis] = uint8_t(exponent);
     if (quantise_with_step(boxes, axis, grid, planes)) return;
   }

@@ -5,7 +5,7 @@ import { lines } from "../kinds/lines.js";
 import { runColour } from "../theme.js";
 
 const kPanels = [
-  { column: "ipc", name: "IPC (warp instructions a cycle)", format: number },
+  { column: "ipc", name: "IPC (warp instructions per cycle)", format: number },
   { column: "rt_warps", name: "Warps in the RT units", format: number },
   { column: "l1d_miss_rate", name: "L1 reads that did not hit", format: (value) => percent(value, 0) },
   { column: "l2_miss_rate", name: "L2 reads that did not hit", format: (value) => percent(value, 0) },

@@ -12,7 +12,7 @@ export const info = {
 export function make(runs) {
   const list = [
     { name: "traversal ratio", colour: "blue", value: (run) => run.metric("traversal_ratio") },
-    { name: "nodes a ray", colour: "orange", value: (run) => run.metric("avg_nodes_per_ray") },
+    { name: "nodes per ray", colour: "orange", value: (run) => run.metric("avg_nodes_per_ray") },
     { name: "depth", colour: "grey", value: (run) => run.metric("bvh_depth") },
   ];
   return runs.some((run) => run.metric("traversal_ratio") !== null) ? measures(runs, list, { format: number }) : null;

@@ -11,7 +11,7 @@ const kNumbers = [
   { name: "IPC", value: (run) => run.ipc, text: (v) => v?.toFixed(2) ?? "–", sub: (run) => `${number(run.sum("gpu.core[*].instructions"))} warp instructions`, stat: "gpu.core[*].instructions / gpu.cycles" },
   { name: "SIMT efficiency", value: (run) => run.metric("simt_efficiency"), text: (v) => percent(v), sub: () => "of 32 lanes execute", stat: "simt_efficiency" },
   { name: "Rays", value: (run) => run.metric("rays_total"), text: number, sub: (run) => `${short(run.metric("rays_total") / run.seconds)} rays/s`, stat: "gpu.rt_unit[*].rt.rays", rays: true },
-  { name: "Nodes a ray", value: (run) => run.metric("avg_nodes_per_ray"), text: (v) => v?.toFixed(1) ?? "–", sub: (run) => `depth ${number(run.metric("bvh_depth"))}, at most ${number(run.metric("max_nodes_per_ray"))}`, stat: "avg_nodes_per_ray", rays: true },
+  { name: "Nodes per ray", value: (run) => run.metric("avg_nodes_per_ray"), text: (v) => v?.toFixed(1) ?? "–", sub: (run) => `depth ${number(run.metric("bvh_depth"))}, at most ${number(run.metric("max_nodes_per_ray"))}`, stat: "avg_nodes_per_ray", rays: true },
   { name: "RT-unit occupancy", value: (run) => run.metric("rt_occupancy"), text: (v) => percent(v), sub: (run) => `of ${run.config("rt.warps")} warp slots, while it has any`, stat: "rt_occupancy", rays: true },
   { name: "L1 hits", value: (run) => hits(run, "core[*].l1"), text: (v) => percent(v), sub: (run) => `${short(run.metric("l1d_accesses"))} accesses`, stat: "l1 hits / reads" },
   { name: "L2 hits", value: (run) => hits(run, "partition[*].l2"), text: (v) => percent(v), sub: (run) => `${short(run.metric("l2_accesses"))} accesses`, stat: "l2 hits / reads" },
