@@ -231,8 +231,9 @@ void ConfigTable::reject_the_rest() {
     if (state_->known.contains(name)) continue;
     const std::string guess = nearest(name, known);
     state_->diagnostics->error(location(key), fmt::format("unknown key '{}'", dotted(state_->path, name)),
-                               guess.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
-                                             : fmt::format("did you mean '{}'?", guess));
+                               known.empty()   ? "this table has no keys"
+                               : guess.empty() ? fmt::format("known here: {}", fmt::join(known, ", "))
+                                               : fmt::format("did you mean '{}'?", guess));
   }
 }
 

@@ -57,6 +57,16 @@ TEST_CASE("an unknown key is reported at its line and column with the nearest kn
         "gpu.toml:3:3: error: unknown key 'core.wraps'\n  note: did you mean 'warps'?");
 }
 
+TEST_CASE("an unknown key of a table without keys is told that there are none") {
+  Config config;
+  config.add_text("gpu.toml", "[gto]\nage = 8\n");
+  Diagnostics diagnostics;
+  config.root(diagnostics).take_table("gto").reject_the_rest();
+
+  CHECK(only_message(diagnostics) ==
+        "gpu.toml:2:1: error: unknown key 'gto.age'\n  note: this table has no keys");
+}
+
 TEST_CASE("a wrong type is reported with what was found and expected, and the fallback stays") {
   Config config;
   config.add_text("gpu.toml", "warps = \"many\"\n");
