@@ -117,7 +117,7 @@ constexpr PeerStat kStats[] = {
      "sum(rt.triangle_tests) * config(rt.triangle.latency) + sum(rt.instance_leaves) * "
      "config(rt.transform.latency)",
      "It counts lane cycles in tests of all units."},
-    {"rt_writes", "sum(rt.result_writes) + sum(rt.table_writes)", ""},
+    {"rt_writes", "sum(rt.result_writes) + sum(rt.table_writes) + sum(rt.hit_writes)", ""},
     {"rt_max_mem_store_q", "", "Glint's RT unit has no store queue."},
     {"rt_avg_mem_store_cycles", "", "Glint's RT unit has no store queue."},
     {"rt_cycles", "(sum(rt.unit_cycles) - sum(rt.cycles::idle)) / sum(rt.unit_cycles)",

@@ -121,6 +121,15 @@ class Bench(BenchTest):
             self.assertIn("only the timing machine counts it", text)
         self.assertIn("functional machine counts it", self.glint(0, "describe", "gpu.nodes_per_ray").stdout)
 
+    def test_writes_of_the_rt_unit_include_hits_that_are_stored_one_by_one(self):
+        self.glint(0, "run", "SHIP_SH", *SMALL, "--config", "vulkan-sim-mobile", "--out", "run")
+        with open(self.folder / "run/stats.csv", newline="") as file:
+            hits = sum(int(row["value"]) for row in csv.DictReader(file) if row["path"].endswith("rt.hit_writes"))
+        self.assertGreater(hits, 0)
+        metrics = self.glint(0, "stats", "run", "--format", "metrics").stdout
+        self.assertEqual(re.search(r"^rt_writes +(\d+) ", metrics, re.M)[1], str(hits))
+        self.assertIn(f"rt_writes = {hits}\n", self.glint(0, "stats", "run", "--format", "vulkan-sim").stdout)
+
     def test_report_and_model_take_the_runs_of_metrics_csv_and_name_the_others(self):
         for workloads, size in ((("WKND_SH", "SHIP_SH"), "8x8"), (("REF_SH", "REF_AO"), "16x16")):
             self.glint(0, "bench", *workloads, "--size", size, "--spp", "1", "--out", "b")
