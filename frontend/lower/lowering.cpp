@@ -219,6 +219,27 @@ Operand ModuleLowering::word(Id id) {
   return widened(emitter_, part, x, part == Part::Int8 || part == Part::Int16);
 }
 
+namespace {
+
+Operands null_parts(const Module& module, Layout& layout, Id id) {
+  const Type& type = module.type(id);
+  if (type.kind == Type::Kind::Pointer && type.storage == spv::StorageClass::Workgroup)
+    return {Operand::value(kNullAddress)};
+  Operands parts;
+  const auto append = [&](const Operands& more) { parts.insert(parts.end(), more.begin(), more.end()); };
+  if (type.kind == Type::Kind::Struct) {
+    for (const Type::Member& member : type.members) append(null_parts(module, layout, member.type));
+  } else if (type.kind == Type::Kind::Array) {
+    const Operands element = null_parts(module, layout, type.element);
+    for (uint32_t i = 0; i < type.count; ++i) append(element);
+  } else {
+    parts.assign(layout.num_parts(id), Operand::value(0));
+  }
+  return parts;
+}
+
+}  // namespace
+
 Operands ModuleLowering::constant_parts(Id id) {
   const Instruction& constant = module_.constants.at(id);
   switch (constant.op) {
@@ -247,10 +268,11 @@ Operands ModuleLowering::constant_parts(Id id) {
     }
     case spv::Op::OpSpecConstantOp:
       return specialised_parts(constant);
+    case spv::Op::OpConstantNull:
+      return null_parts(module_, layout_, constant.type);
     default:
       unsupported(name_of_opcode(uint32_t(constant.op)), constant.line);
       [[fallthrough]];
-    case spv::Op::OpConstantNull:
     case spv::Op::OpUndef:  // Choice: an undefined value is 0.
       return Operands(layout_.num_parts(constant.type), Operand::value(0));
   }

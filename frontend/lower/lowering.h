@@ -66,6 +66,10 @@ struct Pointer {
   std::string_view shape;                  // Texel: the geometry as image ops name it
 };
 
+// Is the null of pointers to shared memory, and to memory of one lane. It is not 0, because a variable may
+// lie at address 0 there. No variable begins at the last byte.
+inline constexpr uint32_t kNullAddress = 0xffff'ffff;
+
 inline Pointer nowhere(Id pointee) {
   Pointer pointer;
   pointer.type = pointee;

@@ -14,6 +14,7 @@
 #include "frontend/spirv/inline_scopes.h"
 #include "frontend/spirv/inlined_size.h"
 #include "frontend/spirv/module_repairs.h"
+#include "frontend/spirv/shared_blocks.h"
 #include "frontend/spirv/spirv.h"
 #include "frontend/spirv/vendor_ray_tracing.h"
 #include "frontend/spirv/words.h"
@@ -105,6 +106,8 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
   std::vector<uint32_t> extensions, output;
   std::vector<uint32_t> input = without_extensions(spirv, &extensions);
   allow_inlining(input);
+  const bool has_overlap = has_overlapping_shared_blocks(input);
+  if (has_overlap) move_variables(input, spv::StorageClass::Workgroup, spv::StorageClass::CrossWorkgroup);
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
   optimizer.SetMessageConsumer(
       [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
@@ -115,6 +118,7 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // The module is validated later, with the extensions in place.
   if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
+  if (has_overlap) move_variables(output, spv::StorageClass::CrossWorkgroup, spv::StorageClass::Workgroup);
   return with_extensions(std::move(output), extensions);
 }
 

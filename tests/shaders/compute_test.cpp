@@ -196,6 +196,43 @@ TEST_CASE("a module's entry points are chosen by name, and the names are told wh
   }
 }
 
+TEST_CASE("what is stored through one shared block is read through another that overlaps it") {
+  ComputeLab lab("compute/overlap.comp");
+  lab.buffers[0] = Words(96);
+  each_machine(lab, [](ComputeLab& after) {
+    for (uint32_t i = 0; i < 32; ++i) {
+      INFO("thread " << i);
+      CHECK(after.buffers[0][i] == i + 1);
+      CHECK(after.buffers[0][32 + i] == 0x10000 * ((i ^ 5) + 1) + 7 * (i ^ 5));
+      CHECK(after.buffers[0][64 + i] == 0x10000 * (i + 1) + 9);
+    }
+  });
+}
+
+TEST_CASE("a pointer to shared memory is null only where it is the null pointer") {
+  ComputeLab lab("compute/nulls.spvasm");
+  lab.buffers[0] = Words(32 * 8);
+  each_machine(lab, [](ComputeLab& after) {
+    for (uint32_t i = 0; i < 32; ++i) {
+      INFO("thread " << i);
+      const uint32_t* row = &after.buffers[0][i * 8];
+      CHECK(Words(row, row + 7) == Words{0, 1, i & 1, 1, 3, 0, i % 2 == 1 ? 7u : 5u});
+    }
+  });
+}
+
+TEST_CASE("pointers to the memory of one lane are compared as addresses, and none of them is null") {
+  ComputeLab lab("compute/local_nulls.spvasm");
+  lab.buffers[0] = Words(32 * 5);
+  each_machine(lab, [](ComputeLab& after) {
+    for (uint32_t i = 0; i < 32; ++i) {
+      INFO("thread " << i);
+      const uint32_t* row = &after.buffers[0][i * 5];
+      CHECK(Words(row, row + 5) == Words{0, 1, 1 - (i & 1), 1, 3});
+    }
+  });
+}
+
 struct Cell {  // scalar layout
   uint8_t a;
   int16_t b;
