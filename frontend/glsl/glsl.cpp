@@ -1,20 +1,16 @@
 // Compiles GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, and messages with
 // file and line.
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
-#include <iterator>
-#include <memory>
 #include <sstream>
 
 #include "frontend/cache.h"
 #include "frontend/compile.h"
+#include "frontend/glsl/includer.h"
 #include "frontend/glsl/newer_glsl.h"
 #include "frontend/program_bytes.h"
 #include "frontend/spirv/known_positions.h"
@@ -22,84 +18,6 @@
 
 namespace glint::frontend {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::optional<std::string> read_text(const fs::path& path) {
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
-// Blanks out the #version lines of an included file, because glslang wants the directive at the start of the
-// main file. Choice: a shader whose first line includes the file with the #version compiles, as it does with
-// tools that paste includes first. A shader without a #version of its own has version 460 in any case.
-void blank_version(std::string& text) {
-  for (size_t line = 0; line < text.size();) {
-    const size_t end = std::min(text.find('\n', line), text.size());
-    size_t at = text.find_first_not_of(" \t", line);
-    if (at < end && text[at] == '#') {
-      at = text.find_first_not_of(" \t", at + 1);
-      if (at < end && text.compare(at, 7, "version") == 0)
-        std::fill(text.begin() + long(line), text.begin() + long(end), ' ');
-    }
-    line = end + 1;
-  }
-}
-
-// Records a file that was looked for, and what was found.
-struct Lookup {
-  std::string path;
-  bool is_there = false;
-  uint64_t hash = 0;
-};
-Lookup look_up(const std::string& path, const std::optional<std::string>& text) {
-  return {path, text.has_value(), text ? content_hash(*text) : 0};
-}
-
-// Looks first next to the including file, then in the include directories in order.
-class Includer final : public glslang::TShader::Includer {
- public:
-  Includer(const std::vector<std::string>& dirs, isa::Stage stage) : dirs_(dirs), stage_(stage) {}
-
-  IncludeResult* includeLocal(const char* header, const char* includer, size_t) override {
-    if (std::string text = text_of_extension(header, stage_); !text.empty())
-      return keep(header, std::move(text));
-    return load(fs::path(includer).parent_path() / header);
-  }
-  IncludeResult* includeSystem(const char* header, const char*, size_t) override {
-    for (const std::string& dir : dirs_)
-      if (IncludeResult* found = load(fs::path(dir) / header)) return found;
-    return nullptr;
-  }
-  void releaseInclude(IncludeResult* result) override { delete result; }
-
-  const std::vector<Lookup>& lookups() const { return lookups_; }
-
- private:
-  // The texts live as long as the includer, because glslang names them in messages after it has released
-  // them.
-  IncludeResult* keep(const std::string& name, std::string text) {
-    texts_.push_back(std::make_unique<std::string>(std::move(text)));
-    return new IncludeResult(name, texts_.back()->data(), texts_.back()->size(), nullptr);
-  }
-
-  IncludeResult* load(const fs::path& path) {
-    std::optional<std::string> text = read_text(path);
-    lookups_.push_back(look_up(path.string(), text));
-    if (!text) return nullptr;
-    blank_version(*text);
-    say_extensions_anew(*text);
-    return keep(path.lexically_normal().string(), std::move(*text));
-  }
-
-  const std::vector<std::string>& dirs_;
-  const isa::Stage stage_;
-  std::vector<std::unique_ptr<std::string>> texts_;
-  std::vector<Lookup> lookups_;
-};
 
 std::string key_of(const std::string& source, const std::string& path, isa::Stage stage,
                    const GlslOptions& options) {
@@ -208,6 +126,18 @@ std::string in_our_form(const std::string& log, const std::string& path, const G
   return result;
 }
 
+// Returns the user's form of glslang's messages on a shader and its includes. Messages after an include that
+// failed are left out, because they come only from its absence.
+std::string with_includes(std::string log, const Includer& includer, const std::string& path,
+                          const GlslOptions& options) {
+  const std::string& failure = includer.failure();
+  const size_t at = failure.empty() ? std::string::npos : log.find(failure);
+  if (at != std::string::npos) log.resize(at + failure.size());
+  std::string message = in_our_form(log, path, options);
+  if (failure.empty() && !includer.cycle().empty()) message += "\nnote: " + includer.cycle();
+  return message;
+}
+
 std::string preamble(const GlslOptions& options) {
   std::string text = "#extension GL_GOOGLE_include_directive : require\n";
   for (const auto& [name, value] : options.defines) text += fmt::format("#define {} {}\n", name, value);
@@ -271,9 +201,9 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   // does not import.
   shader.setEnhancedMsgs();
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
-  Includer includer(options.include_dirs, stage);
+  Includer includer(options.include_dirs, stage, path);
   if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
-    throw UserError(in_our_form(shader.getInfoLog(), path, options));
+    throw UserError(with_includes(shader.getInfoLog(), includer, path, options));
   std::vector<uint32_t> words = generate(shader, language, messages, path, options);
   if (options.cache) store(*options.cache, key, includer.lookups(), words);
   return words;

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: shader_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
+import time
 
 import glint_case
 from glint_case import GlintTest
@@ -209,6 +210,18 @@ class Emission(ShaderTest):
         self.assertIn("a.comp:3: error:", done.stderr.decode())
         done = self.glint("compile", "a.comp", "-Iinclude", "-DLINES=0", code=2)
         self.assertIn("a.comp:9: error:", done.stderr.decode())
+
+    def test_an_include_that_is_not_found_names_the_folders_searched(self):
+        done = self.glint("compile", "a.comp", "-Iother", "-Ithird", "-DSCALE=1", "-DLINES=0", code=2)
+        self.assertEqual(done.stderr.decode(), "a.comp:3: error: '#include' : cannot find part.glsl; searched in ., other, third\n")
+
+    def test_a_shader_that_includes_itself_is_refused_within_two_seconds(self):
+        self.write("again.comp", "#version 460\n" + "// a line\n" * 5000 + '#include "again.comp"\n' * 3 + "void main() {}\n")
+        begin = time.monotonic()
+        done = self.glint("compile", "again.comp", code=2)
+        self.assertLess(time.monotonic() - begin, 2)
+        self.assertIn("again.comp:5002: error:", done.stderr.decode())
+        self.assertIn("more than 100 deep: again.comp includes again.comp", done.stderr.decode())
 
     def test_folders_are_searched_in_order_and_the_includer_s_first(self):
         self.write("other/part.glsl", "float part() { return other; }\n")

@@ -11,6 +11,7 @@ namespace glint::frontend {
 namespace {
 
 using Catch::Contains;
+using Catch::EndsWith;
 
 std::string message_of(const std::string& path, const GlslOptions& options = {}) {
   try {
@@ -68,6 +69,91 @@ TEST_CASE("an include is looked for next to the including file before the includ
                                         "\"three.glsl\"\nvoid main() { int x = number() + three(); }\n");
   CHECK_NOTHROW(glsl_to_spirv(path, {{directory}, {}}));
   CHECK_THAT(message_of(path), Contains("three.glsl"));
+}
+
+TEST_CASE("an include is looked for in the folders of all files that lead to it, the nearest first") {
+  const lab::Folder folder;
+  folder.write("a/one.glsl", "#include \"b/two.glsl\"\n");
+  folder.write("a/b/two.glsl", "#include \"near.glsl\"\n#include \"far.glsl\"\n");
+  folder.write("a/near.glsl", "int near() { return 1; }\n");
+  folder.write("near.glsl", "#error wrong file\n");
+  folder.write("far.glsl", "int far() { return 2; }\n");
+  const std::string path = folder.write(
+      "m.comp", "#version 460\n#include \"a/one.glsl\"\nvoid main() { int x = near() + far(); }\n");
+  CHECK(message_of(path) == "no error");
+}
+
+TEST_CASE("an include in angle brackets is looked for only in the include directories") {
+  const lab::Folder folder, other;
+  folder.write("one.glsl", "#error wrong file\n");
+  const std::string found = other.write("one.glsl", "int one() { return 1; }\n");
+  const std::string path =
+      folder.write("m.comp", "#version 460\n#include <one.glsl>\nvoid main() { int x = one(); }\n");
+  CHECK(message_of(path, {{found.substr(0, found.rfind('/'))}, {}}) == "no error");
+  CHECK_THAT(message_of(path), Contains(path + ":2: error: '#include' : cannot find one.glsl; there are no "
+                                               "include folders (-I)"));
+}
+
+TEST_CASE("an include that is not found names the folders searched, each once, and nothing else") {
+  const lab::Folder folder;
+  const std::string header = folder.write("sub/one.glsl", "\n#include \"missing.glsl\"\nint a = b;\n");
+  const std::string path =
+      folder.write("m.comp", "#version 460\n#include \"sub/one.glsl\"\nvoid main() { missing(); }\n");
+  const std::string place = path.substr(0, path.rfind('/'));
+  CHECK(message_of(path, {{"/nowhere", place}, {}}) ==
+        header + ":2: error: '#include' : cannot find missing.glsl; searched in " + place + "/sub, " + place +
+            ", /nowhere");
+}
+
+TEST_CASE("a shader that includes itself is refused with the chain of files") {
+  const lab::Folder folder;
+  const std::string path =
+      folder.write("m.comp", "#version 460\n#include \"m.comp\"\n#include \"m.comp\"\nvoid main() {}\n");
+  CHECK(message_of(path) == path + ":2: error: '#include' : files include each other more than 100 deep: " +
+                                path + " includes " + path);
+}
+
+TEST_CASE("two files that include each other are refused with the chain of files") {
+  const lab::Folder folder;
+  const std::string a = folder.write("a.glsl", "#include \"b.glsl\"\n");
+  const std::string b = folder.write("b.glsl", "\n\n#include \"a.glsl\"\n#include \"a.glsl\"\n");
+  const std::string path =
+      folder.write("m.comp", "#version 460\n#include \"a.glsl\"\nvoid main() { f(); }\n");
+  CHECK(message_of(path) == b + ":3: error: '#include' : files include each other more than 100 deep: " +
+                                path + " includes " + a + ", which includes " + b + ", which includes " + a);
+}
+
+TEST_CASE("a mistake that comes from files that include each other is reported with the chain of files") {
+  const lab::Folder folder;
+  const std::string a = folder.write("a.glsl", "int f() { return 1; }\n#include \"b.glsl\"\n");
+  const std::string b = folder.write("b.glsl", "#include \"a.glsl\"\n#include \"a.glsl\"\n");
+  const std::string path = folder.write("m.comp", "#version 460\n#include \"a.glsl\"\nvoid main() {}\n");
+  const std::string said = message_of(path);
+  CHECK_THAT(said, Contains(a + ":1: error: 'f' : function already has a body"));
+  CHECK_THAT(said, EndsWith("\nnote: " + path + " includes " + a + ", which includes " + b +
+                            ", which includes " + a));
+}
+
+TEST_CASE("files that double what they include are refused before they fill the memory") {
+  const lab::Folder folder;
+  for (int i = 0; i < 40; ++i) {
+    const std::string next = "#include \"f" + std::to_string(i + 1) + ".glsl\"\n";
+    folder.write("f" + std::to_string(i) + ".glsl", next + next);
+  }
+  folder.write("f40.glsl", "\n");
+  const std::string path = folder.write("m.comp", "#version 460\n#include \"f0.glsl\"\nvoid main() {}\n");
+  CHECK_THAT(message_of(path), Contains("files include each other again and again, 10001 times by now: ") &&
+                                   Contains("f9.glsl, which includes") && Contains(", and so on"));
+}
+
+TEST_CASE("a file may include itself until a macro ends it") {
+  const lab::Folder folder;
+  folder.write("count.glsl",
+               "#ifndef A\n#define A\n#include \"count.glsl\"\n#elif !defined(B)\n#define B\n"
+               "#include \"count.glsl\"\n#else\nint last() { return 3; }\n#endif\n");
+  const std::string path =
+      folder.write("m.comp", "#version 460\n#include \"count.glsl\"\nvoid main() { int x = last(); }\n");
+  CHECK(message_of(path) == "no error");
 }
 
 TEST_CASE("a define reaches the shader with its value") {
