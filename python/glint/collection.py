@@ -92,7 +92,7 @@ class Bench(Runs):
     Its runs are the workloads of the table. If the bench was stopped before it wrote a table, they are all runs in the folder.
 
     Attributes:
-        others: The names of complete runs of an earlier bench that are in the folder but not in the table.
+        others: The names of complete runs that are in the folder but not in the table.
     """
 
     def __init__(self, directory: str | pathlib.Path):

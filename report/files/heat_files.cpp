@@ -63,12 +63,12 @@ std::string heat_index(const std::vector<CostMap>& maps) {
 }
 
 std::vector<std::pair<std::string, std::string>> heat_files(const std::vector<CostMap>& maps) {
-  std::vector<std::pair<std::string, std::string>> files;
+  // The index comes first, because it tells the next run which files to remove, even when this one is killed.
+  std::vector<std::pair<std::string, std::string>> files = {{"heat/maps.json", heat_index(maps)}};
   for (const CostMap& map : maps) {
     files.emplace_back("heat/" + map.name + ".npy", npy_of_map(map));
     files.emplace_back("heat/" + map.name + ".png", heat_png(map));
   }
-  files.emplace_back("heat/maps.json", heat_index(maps));
   return files;
 }
 

@@ -12,6 +12,7 @@
 
 #include "base/diagnostics.h"
 #include "report/files/config_file.h"
+#include "report/files/run_facts.h"
 #include "report/files/stat_writer.h"
 
 namespace glint::report {
@@ -28,6 +29,7 @@ nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
 constexpr const char* kResults[] = {"image.png",      "image.pfm",   "printf.txt", "profile.csv",
                                     "profile.folded", "source.json", "series.csv", "trace.json.gz"};
 constexpr const char* kFolder = "heat";  // the only folder of a run
+constexpr const char* kUnfinished = "the run has not ended: it still runs, or it was killed";
 
 bool put(const std::string& path, const std::string& bytes) {
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
@@ -36,18 +38,32 @@ bool put(const std::string& path, const std::string& bytes) {
   return bool(out);
 }
 
-// Returns what the run of that run.json has saved. It returns only names in the run's folder, whatever the
-// file says.
-std::vector<std::string> saved_before(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+// Returns the strings of a list in a JSON file, or none when the file has no such list. It returns only names
+// in one folder, whatever the file says. `name_of` finds the name in an item.
+template <typename NameOf>
+std::vector<std::string> listed_names(const std::string& path, const char* key, NameOf name_of) {
+  const nlohmann::json json = nlohmann::json::parse(text_of_run_file(path).value_or(""), nullptr, false);
   std::vector<std::string> out;
-  if (!json.is_object() || !json.contains("saved") || !json["saved"].is_array()) return out;
-  for (const nlohmann::json& name : json["saved"])
+  if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return out;
+  for (const nlohmann::json& item : json[key]) {
+    const nlohmann::json name = name_of(item);
     if (name.is_string() && name != "." && name != ".." && !name.get<std::string>().empty() &&
         name.get<std::string>().find('/') == std::string::npos)
       out.push_back(name);
+  }
   return out;
+}
+
+// Returns what the run of that run.json has saved.
+std::vector<std::string> saved_before(const std::string& path) {
+  return listed_names(path, "saved", [](const nlohmann::json& item) { return item; });
+}
+
+// Returns the names of the maps in a maps.json.
+std::vector<std::string> maps_before(const std::string& path) {
+  return listed_names(path, "maps", [](const nlohmann::json& item) {
+    return item.is_object() && item.contains("name") ? item["name"] : nlohmann::json();
+  });
 }
 
 }  // namespace
@@ -77,12 +93,42 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
     throw UserError({path_}, "cannot create the output folder", "name another folder with --out");
 }
 
+void RunDirectory::check_ours() const {
+  if (is_run_folder(path_) || is_unused_folder(path_)) return;
+  throw UserError({path_}, "the folder holds files that are not of a run",
+                  "give --out a new or empty folder, or that of an earlier run");
+}
+
+void RunDirectory::mark(RunInfo info) const {
+  info.exit = int(Exit::Failure);
+  info.message = kUnfinished;
+  write_run(info);
+}
+
+void RunDirectory::begin(RunInfo info) {
+  check_ours();
+  lock_ = FolderLock(path_);
+  const std::vector<std::string> earlier = own_files();
+  std::error_code error;
+  for (const std::string& name : info.saved)
+    if (std::ranges::find(earlier, name) == earlier.end() &&
+        fs::exists(fs::symlink_status(path_of(name), error)))
+      throw UserError({path_of(name)},
+                      "the file is not of an earlier run, and this run saves one of its name",
+                      "move it away, or give --out a new or empty folder");
+  // A killed run leaves this list, from which the next run knows what to remove.
+  for (const std::string& name : saved_before(path_of("run.json")))
+    if (std::ranges::find(info.saved, name) == info.saved.end()) info.saved.push_back(name);
+  mark(info);
+  remove_results();
+}
+
 void RunDirectory::remove(const std::string& name) const {
   std::error_code error;
-  if (name != kFolder && fs::is_directory(fs::symlink_status(path_of(name), error)))
+  if (fs::is_directory(fs::symlink_status(path_of(name), error)))
     throw UserError({path_of(name)}, "a folder stands where a run has a file",
                     "move it away, or name another folder with --out");
-  fs::remove_all(path_of(name), error);
+  fs::remove(path_of(name), error);
   if (error) throw UserError({path_of(name)}, "cannot remove what an earlier run left: " + error.message());
 }
 
@@ -95,14 +141,22 @@ void RunDirectory::write(const std::string& name, const std::string& bytes) cons
   write_file(path_of(name), bytes);
 }
 
-void RunDirectory::remove_results(const std::vector<std::string>& saved) const {
+std::vector<std::string> RunDirectory::own_files() const {
   std::vector<std::string> names = saved_before(path_of("run.json"));
-  names.insert(names.end(), saved.begin(), saved.end());
   for (const std::string& format : Registry<StatWriter>::names()) names.push_back("stats." + format);
   names.insert(names.end(), std::begin(kResults), std::end(kResults));
-  names.push_back(kFolder);
-  remove("run.json");
-  for (const std::string& name : names) remove(name);
+  return names;
+}
+
+void RunDirectory::remove_results() const {
+  for (const std::string& name : own_files()) remove(name);
+  const std::string folder = path_of(kFolder), index = std::string(kFolder) + "/maps.json";
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(folder, error))) return;
+  for (const std::string& map : maps_before(path_of(index)))
+    for (const char* ending : {".npy", ".png"}) remove(std::string(kFolder) + "/" + map + ending);
+  remove(index);
+  fs::remove(folder, error);  // The folder stays when it holds files of others.
 }
 
 void RunDirectory::write_image(const ImageView& image) const {

@@ -10,6 +10,7 @@
 
 #include "base/params.h"
 #include "base/stats.h"
+#include "report/files/folder_lock.h"
 #include "report/picture/image_files.h"
 
 namespace glint::report {
@@ -64,8 +65,9 @@ struct RunInfo {
 // device) is written to directly.
 void write_file(const std::string& path, const std::string& bytes);
 
-// Writes the files of a run through write_file(). run.json is written last, so a directory with one is
-// complete, or says what went wrong. Throws UserError when the folder or a file cannot be written.
+// Writes the files of a run through write_file(). A run.json that says that the run has not ended is written
+// first, and the real one last. A directory whose run.json has exit 0 is therefore complete. Throws UserError
+// when the folder or a file cannot be written.
 class RunDirectory {
  public:
   explicit RunDirectory(std::string path);  // the folder is made with its parents
@@ -74,17 +76,27 @@ class RunDirectory {
 
   // Writes a file. "heat/rays.png" is in a folder below.
   void write(const std::string& name, const std::string& bytes) const;
-  void remove(const std::string& name) const;  // removes a file or folder of an earlier run, if it exists
-  // Removes all that an earlier run left except config.toml, run.json first, and also `saved`. Files of other
-  // commands stay.
-  void remove_results(const std::vector<std::string>& saved) const;
+  // Throws UserError unless the folder is empty or an earlier run has marked it with a run.json.
+  void check_ours() const;
+  void mark(RunInfo info) const;  // writes the run.json of a run that has not ended
+  // Begins a run: checks the folder, locks it until this object dies, marks it, and removes the results of an
+  // earlier run. `info.saved` has the files that this run is going to save. Throws UserError, before anything
+  // is touched, when another process writes into the folder or such a file is not of an earlier run.
+  void begin(RunInfo info);
+  void remove(const std::string& name) const;  // removes a file of an earlier run, if it exists
+  // Removes the results that this run or an earlier one has left. config.toml, run.json and files of others
+  // stay.
+  void remove_results() const;
   void write_image(const ImageView& image) const;    // image.png, image.pfm
   void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format
   void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml
   void write_run(const RunInfo& info) const;                                                // run.json
 
  private:
+  std::vector<std::string> own_files() const;  // results that a run may have left beside the folder heat
+
   std::string path_;
+  FolderLock lock_;
 };
 
 }  // namespace glint::report

@@ -3,15 +3,15 @@
 #include "report/files/run_record.h"
 
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "report/files/csv_field.h"
 #include "report/files/run_directory.h"
+#include "report/files/run_facts.h"
 #include "report/files/stat_rows.h"
 
 namespace glint::report {
@@ -25,9 +25,9 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::string whole_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::optional<std::string> text = text_of_run_file(path);
+  if (!text) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
+  return std::move(*text);
 }
 
 void flatten(const nlohmann::json& json, const std::string& name, std::map<std::string, double>& numbers,
@@ -46,7 +46,7 @@ void flatten(const nlohmann::json& json, const std::string& name, std::map<std::
 
 void RunRecord::add_finished(const std::string& directory) {
   const std::string file = directory + "/run.json";
-  add_facts(whole_file(file), file);
+  add_facts(read_run_facts(file).dump(), file);
   if (const double schema = fact("schema").value_or(0); schema != kRunSchema)
     throw UserError({file}, fmt::format("it has schema {}, expected {}", schema, kRunSchema),
                     "another version of Glint wrote it: run it again with this one");

@@ -16,7 +16,7 @@ namespace {
 
 using TraceJson = nlohmann::json;
 
-constexpr uint32_t kFirstCore = 2;  // process of core 0
+constexpr uint32_t kFirstCoreProcess = 2;  // process of core 0
 
 UserError damaged(const std::string& path) {
   return UserError({path}, "this is not a trace of a run", "`glint run ... --trace` writes one");
@@ -91,7 +91,7 @@ void bound(Timeline& timeline, size_t most) {
 Timeline read_timeline(const std::string& path, const TimelineRequest& request) {
   Timeline timeline;
   timeline.core = request.core;
-  const std::string wanted = fmt::format(R"({{"ph":"X","pid":{},)", kFirstCore + request.core);
+  const std::string wanted = fmt::format(R"({{"ph":"X","pid":{},)", kFirstCoreProcess + request.core);
   bool has_head = false;
   read_gzip_lines(path, [&](std::string_view line) {
     if (!has_head) read_head(line, path, timeline), has_head = true;

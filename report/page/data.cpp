@@ -5,8 +5,6 @@
 #include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -17,6 +15,7 @@
 #include "report/files/heat_files.h"
 #include "report/files/profile_files.h"
 #include "report/files/run_directory.h"
+#include "report/files/run_facts.h"
 #include "report/metrics/metrics.h"
 #include "report/page/heat.h"
 #include "report/page/profile.h"
@@ -29,14 +28,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::optional<std::string> bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(in), {}};
-}
-
 Json json_of(const std::string& path) {
-  const std::optional<std::string> text = bytes_of(path);
+  const std::optional<std::string> text = text_of_run_file(path);
   if (!text) throw UserError({path}, "cannot read the file", "the run has not finished; run it again");
   Json parsed = Json::parse(*text, nullptr, false);
   if (!parsed.is_object())
@@ -53,7 +46,7 @@ Json facts_of(const std::string& directory) {
   if (!std::filesystem::exists(path))
     throw UserError({path}, "there is no such file",
                     "the directory is not of a run, or the run was ended before it finished");
-  Json facts = json_of(path);
+  Json facts = read_run_facts(path);
   if (const int schema = facts.value("schema", 0); schema != kRunSchema)
     throw UserError({path}, fmt::format("it has schema {}, expected {}", schema, kRunSchema),
                     "another version of Glint wrote it: run it again with this one");
@@ -63,6 +56,9 @@ Json facts_of(const std::string& directory) {
   if (const std::string mode = facts.value("mode", ""); mode != "timing")
     throw UserError({path}, fmt::format("a run of mode '{}' has no cycles", mode),
                     "a report shows runs of the timing machine: --mode timing");
+  for (const char* key : {"scene", "config"})
+    if (!facts.contains(key))
+      throw UserError({path}, fmt::format("there is no '{}'", key), "the file is damaged; run it again");
   return facts;
 }
 
@@ -139,18 +135,18 @@ Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
                     "another version of Glint wrote it: run it again with this one");
   out["metrics"] = metrics_json(RunRecord::read(directory));
   // RunRecord has already read this file.
-  add_config(run, *bytes_of(directory + "/config.toml"), out, key_docs);
-  if (const auto csv = bytes_of(directory + "/series.csv"))
+  add_config(run, *text_of_run_file(directory + "/config.toml"), out, key_docs);
+  if (const auto csv = text_of_run_file(directory + "/series.csv"))
     out["series"] = columns_of(*csv, directory + "/series.csv");
-  if (const auto csv = bytes_of(directory + "/profile.csv")) {
+  if (const auto csv = text_of_run_file(directory + "/profile.csv")) {
     const ProfileTable profile = parse_profile(*csv, directory + "/profile.csv");
     out["profile"] = page_profile(profile);
-    if (const auto source = bytes_of(directory + "/source.json"))
+    if (const auto source = text_of_run_file(directory + "/source.json"))
       out["source"] = page_source(profile, parse_source(*source, directory + "/source.json"));
   }
   if (const std::vector<CostMap> maps = read_heat(directory); !maps.empty()) out["heat"] = page_heat(maps);
   add_timeline(run, out);
-  if (const auto png = bytes_of(directory + "/image.png"))
+  if (const auto png = text_of_run_file(directory + "/image.png"))
     out["picture"] = "data:image/png;base64," + base64(*png);
   return out;
 }

@@ -131,8 +131,9 @@ class Bench(BenchTest):
         self.assertIn(f"rt_writes = {hits}\n", self.glint(0, "stats", "run", "--format", "vulkan-sim").stdout)
 
     def test_report_and_model_take_the_runs_of_metrics_csv_and_name_the_others(self):
-        for workloads, size in ((("WKND_SH", "SHIP_SH"), "8x8"), (("REF_SH", "REF_AO"), "16x16")):
-            self.glint(0, "bench", *workloads, "--size", size, "--spp", "1", "--out", "b")
+        self.glint(0, "bench", "REF_SH", "REF_AO", *SMALL, "--out", "b")
+        for other in ("WKND_SH", "SHIP_SH"):
+            self.glint(0, "run", other, *SMALL, "--out", f"b/{other}")
         model = self.glint(0, "model", "b", "--statistics-only")
         with open(self.folder / "b/models.csv", newline="") as file:
             self.assertEqual([row["workload"] for row in csv.DictReader(file)], ["REF_AO", "REF_SH"])
@@ -157,7 +158,8 @@ class Bench(BenchTest):
         self.assertEqual(sorted(runs()), ["SHIP_SH", "WKND_SH"])
 
     def test_a_workload_that_fails_does_not_stop_the_others_and_the_exit_status_says_so(self):
-        (self.folder / "out/SHIP_SH").mkdir(parents=True)
+        self.glint(0, "run", "SHIP_SH", *SMALL, "--out", "out/SHIP_SH")
+        (self.folder / "out/SHIP_SH/stats.csv").unlink()
         (self.folder / "out/SHIP_SH/stats.csv").mkdir()  # a folder that no file can replace
         done = self.glint(1, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out")
         self.assertIn("FAILED", done.stdout)

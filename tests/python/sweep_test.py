@@ -106,10 +106,11 @@ class Sweeps(PythonTest):
         self.assertRaisesRegex(TypeError, r"\['gto'\]", self.glint.sweep, "WKND_SH", {"core.issue": "gto"}, out=self.folder / "text", **TINY)
         self.assertRaisesRegex(TypeError, r"\[8\]", self.glint.sweep, "WKND_SH", {"core.warps": 8}, out=self.folder / "text", **TINY)
 
-    def test_a_bench_has_the_workloads_of_its_table_and_names_older_ones(self):
+    def test_a_bench_has_the_workloads_of_its_table_and_names_other_runs(self):
         there = self.folder / "bench"
-        for workload in ("SHIP_SH", "WKND_SH"):
-            subprocess.run([GLINT, "bench", workload, "--size", "8x8", "--spp", "1", "--out", there], check=True, capture_output=True)
+        for command, out in (("bench", there), ("run", there / "SHIP_SH")):
+            workload = "WKND_SH" if command == "bench" else "SHIP_SH"
+            subprocess.run([GLINT, command, workload, "--size", "8x8", "--spp", "1", "--out", out], check=True, capture_output=True)
         bench = self.glint.Bench(there)
         self.assertEqual((list(bench), bench.others), (bench.table["workload"], ["SHIP_SH"]))
 

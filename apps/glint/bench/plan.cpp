@@ -15,6 +15,7 @@
 #include "apps/glint/options/resources.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
+#include "report/files/run_facts.h"
 
 namespace glint::app {
 namespace {
@@ -59,12 +60,15 @@ std::string key_of(const Session& session, const BenchOptions& options) {
 }
 
 nlohmann::json mark_of(const BenchTask& task) {
-  return nlohmann::json::parse(bytes_of(task.directory + "/" + kMark), nullptr, false);
+  const std::string text = report::text_of_run_file(task.directory + "/" + kMark).value_or("");
+  return nlohmann::json::parse(text, nullptr, false);
 }
 
 bool is_complete(const BenchTask& task, const std::string& key) {
   const nlohmann::json mark = mark_of(task);
   if (!mark.is_object() || !mark.contains("key") || mark["key"] != key) return false;
+  for (const char* name : {"wall_seconds", "peak_bytes"})
+    if (!mark.contains(name) || !mark[name].is_number()) return false;
   return fs::exists(task.directory + "/stats.csv") && fs::exists(task.directory + "/run.json") &&
          fs::exists(task.directory + "/config.toml");
 }

@@ -52,7 +52,7 @@ std::vector<std::string> bench_runs(const std::string& folder) {
   if (!others.empty())
     fmt::print(stderr,
                "warning: {}: these runs are left out, because its metrics.csv does not have them (they "
-               "failed, or an earlier bench made them): {}\n",
+               "failed, or no bench made them): {}\n",
                folder, fmt::join(others, " "));
   return out;
 }

@@ -12,8 +12,8 @@ namespace glint::app {
 std::string metrics_file(const std::string& file_or_folder);
 
 // Returns the directories of the runs in a folder of `glint bench`, ordered by name. These are the runs of
-// its metrics.csv, which the last bench completed. Other runs in the folder (failed ones, or those of an
-// earlier bench) are named on stderr. When metrics.csv has no rows or does not exist, all runs are returned.
+// its metrics.csv, which benches completed. Other runs in the folder (failed ones, or those of `glint run`)
+// are named on stderr. When metrics.csv has no rows or does not exist, all runs are returned.
 std::vector<std::string> bench_runs(const std::string& folder);
 
 // Returns workload and directory of every finished run below a folder, as bench_runs() finds them, or the

@@ -1,17 +1,22 @@
 // Declares `glint bench [NAMES...]`, which runs workloads as processes and gathers their metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "apps/glint/bench/estimate.h"
+#include "apps/glint/bench/metrics_table.h"
 #include "apps/glint/bench/plan.h"
 #include "apps/glint/bench/view.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/frame_options.h"
+#include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
+#include "report/files/run_facts.h"
 #include "report/metrics/metrics.h"
 
 namespace glint::app {
@@ -30,14 +35,19 @@ class Bench {
  public:
   Bench(const Session& session, const BenchOptions& options)
       : options_(options),
+        command_(session.arguments),
         plan_(plan_bench(session, options)),
-        csv_(plan_.tasks.size()),
+        table_(plan_.directory, names_of(plan_)),
         is_live_(session.can_move_cursor),
         terminal_(session.terminal) {}
 
   Exit run() {
-    const report::RunDirectory directory(plan_.directory);
     choose();
+    const report::RunDirectory directory(plan_.directory);
+    const report::FolderLock lock(plan_.directory);
+    table_ = MetricsTable(plan_.directory, names_of(plan_));  // as a bench left it that has ended just now
+    if (table_.is_new()) write_metrics(directory);            // This marks the folder as that of a bench.
+    take_complete();
     limits();
     announce();
     const bool whole = run_chosen(directory);
@@ -46,16 +56,44 @@ class Bench {
   }
 
  private:
+  static std::set<std::string> names_of(const BenchPlan& plan) {
+    std::set<std::string> out;
+    for (const BenchTask& task : plan.tasks) out.insert(task.workload.name());
+    return out;
+  }
+
+  // Chooses what to run. Throws UserError when a folder is not of a run, before anything runs.
   void choose() {
     for (size_t i = 0; i < plan_.tasks.size(); ++i) {
-      BenchTask& task = plan_.tasks[i];
-      if (task.is_complete) {
-        read_mark(task, task.process);
-        csv_[i] = report::metrics_row(task.workload.name(), report::RunRecord::read(task.directory));
-      } else {
-        chosen_.push_back(i);
-      }
+      if (plan_.tasks[i].is_complete) continue;
+      chosen_.push_back(i);
+      if (std::filesystem::exists(plan_.tasks[i].directory))
+        report::RunDirectory(plan_.tasks[i].directory).check_ours();
     }
+  }
+
+  void take_complete() {
+    for (BenchTask& task : plan_.tasks) {
+      if (!task.is_complete) continue;
+      read_mark(task, task.process);
+      set_row(task, report::RunRecord::read(task.directory));
+    }
+  }
+
+  void set_row(const BenchTask& task, const report::RunRecord& record) {
+    table_.set(task.workload.name(), report::metrics_row(task.workload.name(), record));
+  }
+
+  // Makes the folder of a workload, or marks an empty one, so that the run finds a folder of its own although
+  // its log is there already.
+  void prepare(const BenchTask& task) const {
+    const report::RunDirectory made(task.directory);
+    made.check_ours();
+    report::RunInfo info;
+    info.command = command_;
+    info.version = GLINT_VERSION;
+    if (!report::is_run_folder(task.directory)) made.mark(info);
+    unmark(task);
   }
 
   void limits() {
@@ -94,8 +132,7 @@ class Bench {
     std::vector<Process> processes;
     std::vector<std::string> names;
     for (const size_t i : chosen_) {
-      const report::RunDirectory made(plan_.tasks[i].directory);
-      unmark(plan_.tasks[i]);
+      prepare(plan_.tasks[i]);
       processes.push_back(plan_.tasks[i].process);
       names.push_back(plan_.tasks[i].workload.name());
     }
@@ -119,7 +156,7 @@ class Bench {
     if (process.state == Process::State::Done) {
       const report::RunRecord record = report::RunRecord::read(task.directory);
       figures = figures_of(record);
-      csv_[index] = report::metrics_row(task.workload.name(), record);
+      set_row(task, record);
       mark_complete(task, plan_.key, process);
       write_metrics(directory);
     }
@@ -135,9 +172,7 @@ class Bench {
   }
 
   void write_metrics(const report::RunDirectory& directory) const {
-    std::string csv = report::metrics_header();
-    for (const std::string& row : csv_) csv += row;
-    directory.write("metrics.csv", csv);
+    directory.write("metrics.csv", table_.text());
   }
 
   Exit conclude(const report::RunDirectory& directory, bool whole) const {
@@ -164,10 +199,11 @@ class Bench {
   }
 
   const BenchOptions& options_;
+  std::vector<std::string> command_;
   BenchPlan plan_;
+  MetricsTable table_;
   PoolLimits limits_;
-  std::vector<size_t> chosen_;    // tasks to run; the others are complete
-  std::vector<std::string> csv_;  // the row of each complete task
+  std::vector<size_t> chosen_;  // tasks to run; the others are complete
   bool is_live_;
   report::Terminal terminal_;
 };

@@ -13,10 +13,13 @@
 #include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"
 #include "report/characterize/characterization_json.h"
+#include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 
 namespace glint::app {
 namespace {
+
+constexpr const char* kDocument = "characterization.json";
 
 struct CharacterizeOptions {
   std::string input, out, linkage = "average";
@@ -65,13 +68,17 @@ Exit characterize(const CharacterizeOptions& options) {
   const std::string out =
       default_place ? (fs::path(metrics).parent_path() / "characterization").string() : options.out;
   const report::RunDirectory directory(out);
-  for (const auto& [name, content] : report::characterization_files(result)) directory.write(name, content);
+  if (!report::is_unused_folder(out) && !fs::exists(directory.path_of(kDocument)))
+    throw UserError({out}, "the folder holds files that are not of a characterisation",
+                    "give --out a new or empty folder, or that of an earlier characterisation");
+  // The document comes first, because it marks the folder.
   directory.write(
-      "characterization.json",
+      kDocument,
       report::characterization_json(result, {.name = options.input, .version = GLINT_VERSION}).dump() + "\n");
+  for (const auto& [name, content] : report::characterization_files(result)) directory.write(name, content);
   write_output("", report::characterization_text(result));
   for (const std::string& other : options.against) print_speed_ups(csv, metrics, other, result);
-  print_output("\n{}\n`glint report {}` draws it\n", directory.path_of("characterization.json"),
+  print_output("\n{}\n`glint report {}` draws it\n", directory.path_of(kDocument),
                default_place && fs::is_directory(options.input) ? options.input : out);
   return Exit::Ok;
 }

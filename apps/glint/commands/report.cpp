@@ -13,6 +13,7 @@
 #include "apps/glint/options/report_inputs.h"
 #include "apps/glint/session.h"
 #include "report/files/config_file.h"
+#include "report/files/run_facts.h"
 #include "report/files/run_record.h"
 #include "report/page/data.h"
 #include "report/page/page.h"
@@ -41,7 +42,7 @@ report::PageRun page_run(const Resources& resources, const std::string& director
   const std::string path = directory + "/run.json";
   if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong.
   report::RunRecord facts;
-  facts.add_facts(read_file(path), path);
+  facts.add_facts(report::read_run_facts(path).dump(), path);
   run.preset_name = preset_of(resources, facts);
   run.preset = report::config_file(describe_params(read_preset(resources, run.preset_name)), run.preset_name);
   return run;

@@ -43,7 +43,10 @@ void add_machine_options(Command command, LaunchOptions& options) {
 
 void add_launch_options(Command command, LaunchOptions& options) {
   add_machine_options(command, options);
-  command.add_option("--out", options.out, "Directory to write the run to (default: out/SCENE_SHADER-MODE)")
+  command
+      .add_option("--out", options.out,
+                  "New or empty directory, or that of an earlier run, to write the run to (default: "
+                  "out/SCENE_SHADER-MODE)")
       .type_name("DIR");
   command.add_flag("--json", options.json, "Print the statistics as JSON instead of the summary");
   command

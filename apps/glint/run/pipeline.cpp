@@ -149,8 +149,8 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   const auto& [x, y, z] = world.world.launch_size;
   const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
                                         description.compute.empty() ? "rays" : "threads", mode, config);
-  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
-                                                           : options.out);
+  report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
+                                                     : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   info.on_fault = exec::name_of(options.on_fault);
   begin_directory(directory, info, job.gpu, title);

@@ -129,8 +129,8 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   const auto& [bx, by, bz] = launch.grid.block;
   const std::string title = fmt::format("{}  {} x {} x {} blocks of {} x {} x {} threads, {} on {}", name, gx,
                                         gy, gz, bx, by, bz, options.mode, options.config);
-  const report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode)
-                                                           : options.out);
+  report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode)
+                                                     : options.out);
   report::RunInfo info = describe_run(session, options, job.gpu, name, text);
   info.on_fault = exec::name_of(options.on_fault);
   for (const LaunchArgument& argument : launch.arguments)

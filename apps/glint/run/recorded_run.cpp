@@ -59,9 +59,9 @@ void keep_prints(const std::string& printed, const report::RunDirectory& directo
 
 }  // namespace
 
-void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info,
+void begin_directory(report::RunDirectory& directory, const report::RunInfo& info,
                      const pipeline::GpuParams& gpu, const std::string& title) {
-  directory.remove_results(info.saved);
+  directory.begin(info);
   directory.write_config(describe_params(gpu), "Resolved configuration of: " + title);
 }
 
@@ -82,7 +82,7 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
     info.message = message;
     // When two errors occur, the first one is told. A full disk has room again once the results are gone.
     try {
-      directory.remove_results(info.saved);
+      directory.remove_results();
       keep_prints(prints ? prints->take() : "", directory);
       directory.write_run(info);
     } catch (const Error&) {

@@ -16,9 +16,9 @@ namespace glint::app {
 report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu,
                              const std::string& config, const std::string& mode);
 
-// Removes what an earlier run left and writes config.toml with the title, so that no older file can be taken
-// for one of this run.
-void begin_directory(const report::RunDirectory& directory, const report::RunInfo& info,
+// Locks and marks the directory (RunDirectory::begin()), removes what an earlier run left and writes
+// config.toml with the title, so that no older file can be taken for one of this run.
+void begin_directory(report::RunDirectory& directory, const report::RunInfo& info,
                      const pipeline::GpuParams& gpu, const std::string& title);
 
 // Calls `run` with the function that shows progress on the terminal under the name `what`, then `keep` to

@@ -109,7 +109,7 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
   job.glsl = glsl_options(launch.shaders, cache.get());
   job.structure_cache = structures.get();
   job.prints = &prints;
-  const report::RunDirectory directory(
+  report::RunDirectory directory(
       launch.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, launch.mode)
                          : launch.out);
   report::RunInfo info = describe_run(session, options, launch, job);

@@ -11,8 +11,10 @@
 #include <unistd.h>
 
 #include "base/config.h"
+#include "base/diagnostics.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
+#include "report/files/run_facts.h"
 #include "report/picture/image_files.h"
 #include "tests/support/catch.h"
 
@@ -121,6 +123,65 @@ TEST_CASE("a run directory is complete and leaves no temporary file") {
   const auto json = nlohmann::json::parse(folder.read("a/b/run.json"));
   CHECK(json.at("scene").at("hash") == "00000000000000ab");
   CHECK(json.at("exit") == 0);
+}
+
+TEST_CASE("a run begins in an empty folder or one of a run, and in no other") {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path / "run").string();
+  RunInfo info;
+  info.command = {"glint", "run"};
+  {
+    RunDirectory directory(path);
+    directory.begin(info);
+    CHECK(nlohmann::json::parse(folder.read("run/run.json")).at("exit") == int(Exit::Failure));
+    directory.write("stats.csv", "a result");
+    directory.write("heat/maps.json", R"({"maps": [{"name": "rays"}, {"name": "../stats"}, 7]})");
+    for (const char* name : {"heat/rays.png", "heat/mine.png", "mine.txt"}) directory.write(name, "x");
+    CHECK_THROWS_AS(RunDirectory(path).begin(info), UserError);  // The first one still runs.
+  }
+  CHECK_FALSE(fs::exists(path + "/glint.lock"));
+  std::ofstream(path + "/glint.lock") << "";  // as a killed process leaves it
+  RunDirectory(path).begin(info);
+  for (const char* name : {"stats.csv", "heat/maps.json", "heat/rays.png"})
+    CHECK_FALSE(fs::exists(folder.path / "run" / name));
+  for (const char* name : {"run.json", "heat/mine.png", "mine.txt"})
+    CHECK(fs::exists(folder.path / "run" / name));
+
+  fs::remove(path + "/run.json");
+  CHECK_THROWS_AS(RunDirectory(path).begin(info), UserError);
+  CHECK(folder.read("run/mine.txt") == "x");
+}
+
+TEST_CASE("what a run saves replaces only what an earlier run has saved") {
+  const TemporaryFolder folder;
+  RunInfo info;
+  info.command = {"glint", "run"};
+  RunDirectory(folder.path.string()).begin(info);
+  std::ofstream(folder.path / "kept.bin") << "mine";
+  info.saved = {"kept.bin"};
+  CHECK_THROWS_AS(RunDirectory(folder.path.string()).begin(info), UserError);
+  CHECK(folder.read("kept.bin") == "mine");
+  fs::remove(folder.path / "kept.bin");
+  RunDirectory(folder.path.string()).begin(info);
+  std::ofstream(folder.path / "kept.bin") << "the run's";
+  info.saved = {};
+  RunDirectory(folder.path.string())
+      .begin(info);  // It finds the list that the run before left as it was killed.
+  CHECK_FALSE(fs::exists(folder.path / "kept.bin"));
+}
+
+TEST_CASE("facts of other types than a run writes are named") {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path);
+  const std::string path = (folder.path / "run.json").string();
+  const auto read = [&](const std::string& text) {
+    std::ofstream(path) << text;
+    return read_run_facts(path);
+  };
+  CHECK(read(R"({"schema": 1, "scene": {"name": "a"}, "other": 7})").at("scene").at("name") == "a");
+  for (const char* text : {R"({"mode": 7})", R"({"scene": {"name": null}})", R"({"schema": "1"})", "[]", "{"})
+    CHECK_THROWS_AS(read(text), UserError);
+  CHECK_THROWS_AS(read_run_facts(folder.path.string()), UserError);  // a folder
 }
 
 TEST_CASE("an output folder that is a file is a user error") {

@@ -1,0 +1,21 @@
+// Reads run.json, and tells the folders of runs from other folders.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+namespace glint::report {
+
+// Returns the bytes of a file of a run, or nullopt when it cannot be read. Only a regular file can be read,
+// because the reader of a pipe waits for a writer.
+std::optional<std::string> text_of_run_file(const std::string& path);
+
+// Reads run.json, whatever the run's end. Throws UserError when the file cannot be read, is not a JSON
+// object, or has a key whose value is of another type than write_run() writes.
+nlohmann::ordered_json read_run_facts(const std::string& path);
+
+// Returns whether `glint run` has written the run.json of a folder.
+bool is_run_folder(const std::string& folder);
+
+}  // namespace glint::report
