@@ -40,7 +40,8 @@ double fact(const report::RunRecord& run, const std::string& directory, const st
 // Returns the job of the launch that a run made.
 pipeline::RenderJob job_of(const Session& session, const ModelOptions& options, const report::RunRecord& run,
                            const std::string& directory) {
-  const WorkloadInfo& workload = find_workload(run.text("shader"));
+  const std::string shader = run.text("shader");
+  const WorkloadInfo& workload = find_workload(shader);
   pipeline::RenderJob job;
   job.gpu = read_config(session.resources, directory + "/config.toml", {});
   job.workload = workload.workload;

@@ -29,8 +29,8 @@ PolicyChoice<Replacement> chosen(const std::string& name, const std::string& par
 
 // Holds the lines of one cache, and the policy under test.
 struct Cache {
-  Cache(const std::string& name, uint32_t sets, uint32_t ways)
-      : ways(ways), lines(size_t{sets} * ways), policy(chosen(name).make({sets, ways})) {}
+  Cache(const std::string& name, uint32_t sets, uint32_t num_ways)
+      : ways(num_ways), lines(size_t{sets} * num_ways), policy(chosen(name).make({sets, num_ways})) {}
   uint32_t victim(uint32_t set) const { return policy->victim(set, lines); }
 
   const uint32_t ways;

@@ -125,11 +125,11 @@ TEST_CASE(
   Diagnostics diagnostics;
   const auto infos = describe_params(read("animal = \"snail\"\n[dog]\nfactor = 4\n", diagnostics), "x.");
 
-  const auto dog = std::find_if(infos.begin(), infos.end(),
-                                [](const ParamInfo& info) { return info.key == "x.dog.factor"; });
-  REQUIRE(dog != infos.end());
-  CHECK(dog->value == "4");
-  CHECK(dog->needs == "x.animal = \"dog\"");
+  const auto found = std::find_if(infos.begin(), infos.end(),
+                                  [](const ParamInfo& info) { return info.key == "x.dog.factor"; });
+  REQUIRE(found != infos.end());
+  CHECK(found->value == "4");
+  CHECK(found->needs == "x.animal = \"dog\"");
 }
 
 TEST_CASE("registered names are sorted whatever the order of registration") {

@@ -21,12 +21,12 @@ FaultLog passed(TextLaunch& launch) {
 }  // namespace
 
 TEST_CASE("loads that go nowhere give 0 in all their registers, in every space") {
-  for (const std::string& load : {"ld.global.v2.b32 {%r10, %r11}, [%rd2 + 4096];",
-                                  "mov.b32 %r6, 64; ld.shared.v2.b32 {%r10, %r11}, [%r6];",
-                                  "mov.b32 %r6, 1048576; ld.const.v2.b32 {%r10, %r11}, [%r6];",
-                                  "mov.b32 %r6, 1048576; ld.param.v2.b32 {%r10, %r11}, [%r6];",
-                                  "atom.global.add.u64 %rd10, [%rd2 + 4096], 1;",
-                                  "cvta.local.u64 %rd4, 0; atom.add.u64 %rd10, [%rd4], 1;"}) {
+  for (const std::string load : {"ld.global.v2.b32 {%r10, %r11}, [%rd2 + 4096];",
+                                 "mov.b32 %r6, 64; ld.shared.v2.b32 {%r10, %r11}, [%r6];",
+                                 "mov.b32 %r6, 1048576; ld.const.v2.b32 {%r10, %r11}, [%r6];",
+                                 "mov.b32 %r6, 1048576; ld.param.v2.b32 {%r10, %r11}, [%r6];",
+                                 "atom.global.add.u64 %rd10, [%rd2 + 4096], 1;",
+                                 "cvta.local.u64 %rd4, 0; atom.add.u64 %rd10, [%rd4], 1;"}) {
     CAPTURE(load);
     TextLaunch launch("    ld.param.b64 %rd2, [0];\n    mov.b32 %r10, 5;\n    mov.b32 %r11, 6;\n    " + load +
                           "\n" + kStore,
