@@ -106,9 +106,9 @@ class Plugin(GlintTest):
         plugin = self.build("mine")
         cycles = {}
         for name in ("oldest", "mine"):
-            done = self.installed("run", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", f"core.issue={name}", "--out", name, "--plugin", plugin)
+            done = self.installed("run", "SHIP_SH", "--size", "16x16", "--spp", "1", "--set", f"core.issue={name}", "--out", f"{name}_run", "--plugin", plugin)
             self.assertEqual(done.returncode, 0, done.stderr)
-            cycles[name] = next(line for line in (self.folder / name / "stats.csv").read_text().splitlines() if line.startswith("gpu.cycles,"))
+            cycles[name] = next(line for line in (self.folder / f"{name}_run" / "stats.csv").read_text().splitlines() if line.startswith("gpu.cycles,"))
         self.assertEqual(cycles["oldest"], cycles["mine"])
 
     def test_a_plugin_that_takes_a_name_or_brings_nothing_or_is_of_another_glint_is_refused(self):
