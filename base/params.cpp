@@ -11,8 +11,7 @@
 namespace glint {
 namespace {
 
-// Calls `visit` with a reference to the number or truth value at `field`, as the type that it has. A const
-// pointer gives a const reference.
+// Calls `visit` with a reference to the number or truth value at `field`, as the type that `type` names.
 template <class Visit>
 void visit_value(FieldType type, const void* field, Visit&& visit) {
   switch (type) {

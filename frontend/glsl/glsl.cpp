@@ -8,6 +8,7 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 #include <sstream>
 
+#include "base/regular_file.h"
 #include "frontend/cache.h"
 #include "frontend/compile.h"
 #include "frontend/glsl/includer.h"
@@ -41,7 +42,7 @@ std::optional<std::vector<uint32_t>> find_words(ShaderCache& cache, const std::s
     const auto path = in.take<std::string>();
     const auto is_there = in.take<uint8_t>() != 0;
     const auto hash = in.take<uint64_t>();
-    const Lookup now = look_up(path, read_text(path));
+    const Lookup now = look_up(path, read_regular_file(path));
     if (path.empty() || now.is_there != is_there || now.hash != hash) return std::nullopt;
   }
   auto words = in.take<std::vector<uint32_t>>();
@@ -172,7 +173,7 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
   if (!stage)
     throw UserError({path, 0, 0}, "unknown shader stage",
                     "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp");
-  const std::optional<std::string> source = read_text(path);
+  const std::optional<std::string> source = read_regular_file(path);
   if (!source) throw UserError({path, 0, 0}, "cannot read the shader");
   return glsl_text_to_spirv(*source, path, *stage, options);
 }

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "base/regular_file.h"
 #include "frontend/cache.h"
 #include "frontend/glsl/newer_glsl.h"
 #include "frontend/program_bytes.h"
@@ -40,14 +39,6 @@ void blank_version(std::string& text) {
 }
 
 }  // namespace
-
-std::optional<std::string> read_text(const fs::path& path) {
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
 
 Lookup look_up(const std::string& path, const std::optional<std::string>& text) {
   return {path, text.has_value(), text ? content_hash(*text) : 0};
@@ -101,7 +92,7 @@ Includer::IncludeResult* Includer::load(const fs::path& path) {
                            chain_in_words());
     return nullptr;
   }
-  std::optional<std::string> text = read_text(path);
+  std::optional<std::string> text = read_regular_file(path.string());
   lookups_.push_back(look_up(path.string(), text));
   if (!text) return nullptr;
   blank_version(*text);

@@ -14,8 +14,6 @@
 
 namespace glint::frontend {
 
-std::optional<std::string> read_text(const std::filesystem::path& path);
-
 // Records a file that was looked for, and what was found.
 struct Lookup {
   std::string path;

@@ -16,8 +16,6 @@
 namespace glint::report {
 namespace {
 
-constexpr const char* kName = "glint.lock";
-
 // Returns whether the open file still has that name, which the holder before may have removed.
 bool has_name(int file, const std::string& path) {
   struct stat open {
@@ -28,7 +26,7 @@ bool has_name(int file, const std::string& path) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::string& folder) : path_(folder + "/" + kName) {
+FolderLock::FolderLock(const std::string& folder) : path_(folder + "/" + kLockFile) {
   for (;;) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (file_ < 0)
@@ -63,7 +61,7 @@ bool is_unused_folder(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const bool is_begun_record = name.starts_with("run.json.") && name.ends_with(".tmp");  // write_file()
-    if (name != kName && !is_begun_record) return false;
+    if (name != kLockFile && !is_begun_record) return false;
   }
   return true;
 }

@@ -5,8 +5,11 @@
 
 namespace glint::report {
 
+// This is the name of the file whose lock is the lock of its folder.
+inline constexpr const char* kLockFile = "glint.lock";
+
 // Holds the lock of a folder. The system releases it when the process ends, however it ends. The lock is a
-// lock on the file "glint.lock" in the folder, which is removed with it; a killed process leaves the file,
+// lock on kLockFile in the folder, which is removed with it; a killed process leaves the file,
 // and the next one takes it over.
 class FolderLock {
  public:

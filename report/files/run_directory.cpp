@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 #include "report/files/config_file.h"
 #include "report/files/run_facts.h"
 #include "report/files/stat_writer.h"
@@ -42,7 +43,7 @@ bool put(const std::string& path, const std::string& bytes) {
 // in one folder, whatever the file says. `name_of` finds the name in an item.
 template <typename NameOf>
 std::vector<std::string> listed_names(const std::string& path, const char* key, NameOf name_of) {
-  const nlohmann::json json = nlohmann::json::parse(text_of_run_file(path).value_or(""), nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(read_regular_file(path).value_or(""), nullptr, false);
   std::vector<std::string> out;
   if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return out;
   for (const nlohmann::json& item : json[key]) {

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/run_facts.h"
 
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 
 namespace glint::report {
 namespace {
@@ -68,26 +67,23 @@ void check_types(const Json& facts, const std::string& path) {
 
 }  // namespace
 
-std::optional<std::string> text_of_run_file(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(in), {}};
+Json read_json_object(const std::string& path, const std::string& advice) {
+  const std::optional<std::string> text = read_regular_file(path);
+  if (!text) throw UserError({path}, "cannot read the file", advice);
+  Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object())
+    throw UserError({path}, "this is not a JSON object", "the file is damaged; run it again");
+  return json;
 }
 
 Json read_run_facts(const std::string& path) {
-  const std::optional<std::string> text = text_of_run_file(path);
-  if (!text) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
-  Json facts = Json::parse(*text, nullptr, false);
-  if (!facts.is_object())
-    throw UserError({path}, "this is not a JSON object", "the file is damaged; run it again");
+  Json facts = read_json_object(path, "is this the directory of a finished run?");
   check_types(facts, path);
   return facts;
 }
 
 bool is_run_folder(const std::string& folder) {
-  const std::optional<std::string> text = text_of_run_file(folder + "/run.json");
+  const std::optional<std::string> text = read_regular_file(folder + "/run.json");
   if (!text) return false;
   const Json facts = Json::parse(*text, nullptr, false);
   return facts.is_object() && facts.contains("schema") && facts["schema"].is_number() &&

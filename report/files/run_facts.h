@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 
 namespace glint::report {
 
-// Returns the bytes of a file of a run, or nullopt when it cannot be read. Only a regular file can be read,
-// because the reader of a pipe waits for a writer.
-std::optional<std::string> text_of_run_file(const std::string& path);
+// Reads a file of a run that holds a JSON object. Throws UserError when the file cannot be read, with
+// `advice` as its note, or holds something else.
+nlohmann::ordered_json read_json_object(const std::string& path, const std::string& advice);
 
 // Reads run.json, whatever the run's end. Throws UserError when the file cannot be read, is not a JSON
 // object, or has a key whose value is of another type than write_run() writes.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 #include "report/files/csv_field.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
@@ -25,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::string whole_file(const std::string& path) {
-  std::optional<std::string> text = text_of_run_file(path);
+  std::optional<std::string> text = read_regular_file(path);
   if (!text) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
   return std::move(*text);
 }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 #include "report/files/base64.h"
 #include "report/files/config_rows.h"
 #include "report/files/heat_files.h"
@@ -27,15 +28,6 @@ namespace glint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const std::string& path) {
-  const std::optional<std::string> text = text_of_run_file(path);
-  if (!text) throw UserError({path}, "cannot read the file", "the run has not finished; run it again");
-  Json parsed = Json::parse(*text, nullptr, false);
-  if (!parsed.is_object())
-    throw UserError({path}, "this is not a JSON object", "the file is damaged; run it again");
-  return parsed;
-}
 
 // Returns run.json of a run whose statistics can be shown.
 Json facts_of(const std::string& directory) {
@@ -129,24 +121,25 @@ void add_timeline(const PageRun& run, Json& out) {
 Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   const std::string& directory = run.directory;
   Json out = {{"directory", directory}, {"run", facts_of(directory)}};
-  out["stats"] = page_stats(json_of(directory + "/stats.json"), stat_docs);
+  out["stats"] = page_stats(
+      read_json_object(directory + "/stats.json", "the run has not finished; run it again"), stat_docs);
   if (!out["stats"].contains("gpu.cycles"))
     throw UserError({directory + "/stats.json"}, "the statistics have no gpu.cycles",
                     "another version of Glint wrote it: run it again with this one");
   out["metrics"] = metrics_json(RunRecord::read(directory));
   // RunRecord has already read this file.
-  add_config(run, *text_of_run_file(directory + "/config.toml"), out, key_docs);
-  if (const auto csv = text_of_run_file(directory + "/series.csv"))
+  add_config(run, *read_regular_file(directory + "/config.toml"), out, key_docs);
+  if (const auto csv = read_regular_file(directory + "/series.csv"))
     out["series"] = columns_of(*csv, directory + "/series.csv");
-  if (const auto csv = text_of_run_file(directory + "/profile.csv")) {
+  if (const auto csv = read_regular_file(directory + "/profile.csv")) {
     const ProfileTable profile = parse_profile(*csv, directory + "/profile.csv");
     out["profile"] = page_profile(profile);
-    if (const auto source = text_of_run_file(directory + "/source.json"))
+    if (const auto source = read_regular_file(directory + "/source.json"))
       out["source"] = page_source(profile, parse_source(*source, directory + "/source.json"));
   }
   if (const std::vector<CostMap> maps = read_heat(directory); !maps.empty()) out["heat"] = page_heat(maps);
   add_timeline(run, out);
-  if (const auto png = text_of_run_file(directory + "/image.png"))
+  if (const auto png = read_regular_file(directory + "/image.png"))
     out["picture"] = "data:image/png;base64," + base64(*png);
   return out;
 }

@@ -8,6 +8,7 @@
 
 #include "apps/glint/bench/workloads.h"
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 #include "report/files/csv_field.h"
 #include "report/files/csv_table.h"
 #include "report/files/folder_lock.h"
@@ -25,7 +26,7 @@ constexpr const char* kAdvice = "give --out a new or empty folder, or that of an
 bool holds_only_folders(const std::string& folder) {
   const fs::directory_iterator entries(folder);
   return std::all_of(begin(entries), end(entries), [](const fs::directory_entry& entry) {
-    return entry.is_directory() || entry.path().filename() == "glint.lock";
+    return entry.is_directory() || entry.path().filename() == report::kLockFile;
   });
 }
 
@@ -45,7 +46,7 @@ MetricsTable::MetricsTable(const std::string& folder, const std::set<std::string
       throw UserError({folder}, "the folder holds files that are not of a bench", kAdvice);
     return;
   }
-  const std::optional<std::string> text = report::text_of_run_file(path);
+  const std::optional<std::string> text = read_regular_file(path);
   if (!text || !text->starts_with("workload,")) throw UserError({path}, "no bench wrote this file", kAdvice);
   is_new_ = false;
   const report::CsvTable table = report::read_csv(*text, path);

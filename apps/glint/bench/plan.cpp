@@ -13,6 +13,7 @@
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/image_size.h"
 #include "apps/glint/options/resources.h"
+#include "base/regular_file.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
@@ -60,7 +61,7 @@ std::string key_of(const Session& session, const BenchOptions& options) {
 }
 
 nlohmann::json mark_of(const BenchTask& task) {
-  const std::string text = report::text_of_run_file(task.directory + "/" + kMark).value_or("");
+  const std::string text = read_regular_file(task.directory + "/" + kMark).value_or("");
   return nlohmann::json::parse(text, nullptr, false);
 }
 
