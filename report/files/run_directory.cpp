@@ -95,7 +95,8 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
 }
 
 void RunDirectory::check_ours() const {
-  if (is_run_folder(path_) || is_unused_folder(path_)) return;
+  // The order matters: a run that begins at the same time writes its run.json before all other files.
+  if (is_unused_folder(path_) || is_run_folder(path_)) return;
   throw UserError({path_}, "the folder holds files that are not of a run",
                   "give --out a new or empty folder, or that of an earlier run");
 }

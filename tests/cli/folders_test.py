@@ -97,7 +97,9 @@ class RunFolders(Folders):
         self.assertNotIn("kept.bin", self.files("run"))
 
     def test_a_killed_run_leaves_a_folder_that_readers_refuse_and_the_next_run_takes(self):
-        self.begin("run", *LONG, "--out", "run").kill()
+        killed = self.begin("run", *LONG, "--out", "run")
+        killed.kill()
+        killed.wait()  # Its lock is gone only then.
         for reader in (["stats", "run", "--format", "metrics"], ["compare", "run", "run"], ["report", "run"], ["annotate", "run"]):
             self.expect(2, ["run.json", "the run has not ended"], *reader)
         self.ok(*RUN, "--out", "run")
