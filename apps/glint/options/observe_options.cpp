@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 
+#include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
 #include "report/files/heat_files.h"
 #include "report/files/profile_files.h"
