@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "frontend/compile.h"
+#include "frontend/spirv/clamped_indices.h"
 #include "frontend/spirv/specialize.h"
 #include "frontend/spirv/spirv.h"
 
@@ -53,8 +54,12 @@ void add_attachments(const Script& script, const Pipeline& pipeline, std::vector
   const auto is_new = [&](const std::string& name) {
     return std::none_of(out.begin(), out.end(), [&](const Attachment& a) { return a.shader == name; });
   };
+  const auto add = [&](Attachment attachment) {
+    attachment.is_clamped = pipeline.clamped.count(attachment.shader) != 0;
+    out.push_back(std::move(attachment));
+  };
   for (const Attachment& each : pipeline.shaders)
-    if (is_new(each.shader)) out.push_back(each);
+    if (is_new(each.shader)) add(each);
   for (const auto& [group, shaders] : pipeline.groups)
     for (const std::string& name : shaders) {
       if (!is_new(name)) continue;
@@ -63,7 +68,7 @@ void add_attachments(const Script& script, const Pipeline& pipeline, std::vector
       if (!attachment.stage)
         throw UserError(pipeline.where,
                         fmt::format("'{}' is a multi shader: ATTACH must give its TYPE", name));
-      out.push_back(attachment);
+      add(std::move(attachment));
     }
   for (const std::string& library : pipeline.libraries)
     add_attachments(script, script.pipelines.at(library), out);
@@ -141,6 +146,7 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
   if (!invalid.empty())
     throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
   words = frontend::specialize(std::move(words), attachment.constants);
+  if (attachment.is_clamped) words = frontend::with_clamped_indices(words, title);
   CompiledShader out;
   Diagnostics notes;
   out.name = shader.name;

@@ -24,6 +24,15 @@ namespace {
 // size of the stack.
 constexpr uint32_t kCallableDepth = 8;
 
+// Returns whether the script asks for one of robustBufferAccess, robustBufferAccess2, robustImageAccess and
+// robustImageAccess2. Choice: each of them covers buffers and images.
+bool declares_robust_access(const Script& script) {
+  return std::any_of(script.features.begin(), script.features.end(), [](const std::string& feature) {
+    return feature.find("robustBufferAccess") != std::string::npos ||
+           feature.find("robustImageAccess") != std::string::npos;
+  });
+}
+
 class Launch {
  public:
   Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
@@ -35,8 +44,7 @@ class Launch {
         bvh_(options.gpu.bvh) {
     world_.memory = &memory_;
     world_.constant_bank.resize(isa::kConstantBankBytes);
-    world_.robust_images = world_.robust_buffers =
-        pipeline_.is_robust || script.features.count("robustBufferAccess") != 0;
+    world_.robust_images = world_.robust_buffers = !options.strict || declares_robust_access(script);
     std::vector<isa::Program> programs;
     for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
     pipeline::add_traversal(programs, options.gpu, options.cache);

@@ -19,6 +19,9 @@ struct LaunchOptions {
   bool no_skip = false;  // for the timing machine
   uint32_t threads = 1;  // threads of the host, for the timing machine
   exec::OnFault on_fault = exec::OnFault::Stop;
+  // With true, an access outside of a buffer or an image is a fault unless the script declares a feature for
+  // robust access.
+  bool strict = false;
   exec::PrintLog* prints = nullptr;        // null: the output of shaders is left out
   frontend::ShaderCache* cache = nullptr;  // null: every shader is compiled anew
 };

@@ -218,13 +218,14 @@ bool parse_ray_tracing_line(Parsing& p, const std::string& name, Pipeline& pipel
   return true;
 }
 
-// Reads SHADER_OPTIMIZATION. Passes of the optimizer are ignored, except the one that bounds the addresses a
-// shader accesses.
+// Reads SHADER_OPTIMIZATION. Passes of the optimiser are ignored, except the one that clamps a shader's
+// indices, because the others do not change what a shader does.
 void parse_optimization(Parsing& p, Pipeline& pipeline) {
   int unused = 0;
-  p.find(p.script.shaders, p.tokens.word("the shader"), "shader");
+  const std::string shader = p.tokens.word("the shader");
+  p.find(p.script.shaders, shader, "shader");
   if (p.tokens.raw_until_end(unused).find("graphics-robust-access") != std::string::npos)
-    pipeline.is_robust = true;
+    pipeline.clamped.insert(shader);
 }
 
 void parse_body(Parsing& p, Pipeline& pipeline) {

@@ -11,8 +11,8 @@ namespace {
 // name many that they do not need, and the compiler refuses by name what a shader uses and Glint lacks. The
 // features listed here change what a launch does, and nothing in the shader would tell.
 bool is_lacking(const std::string& name) {
-  for (const char* part : {"sparse", "nullDescriptor", "protectedMemory", "robustBufferAccess2",
-                           "robustImageAccess2", "RoundingModeRTZ", "DenormFlushToZero"})
+  for (const char* part :
+       {"sparse", "nullDescriptor", "protectedMemory", "RoundingModeRTZ", "DenormFlushToZero"})
     if (name.find(part) != std::string::npos) return true;
   return false;
 }

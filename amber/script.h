@@ -65,6 +65,7 @@ struct Attachment {
   std::string entry = "main";
   std::optional<isa::Stage> stage;
   std::map<uint32_t, uint64_t> constants;  // bits, by constant_id
+  bool is_clamped = false;                 // indices are clamped to what they index
 };
 
 enum class BindKind : uint8_t {
@@ -91,8 +92,8 @@ struct Binding {
 struct Pipeline {
   std::string name;
   bool is_ray_tracing = false;
-  bool is_robust = false;           // Accesses outside of buffers and images are not faults.
   std::vector<Attachment> shaders;  // a compute pipeline has one
+  std::set<std::string> clamped;    // shaders whose indices SHADER_OPTIMIZATION clamps
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   std::map<std::string, std::vector<std::string>> tables;  // names of groups, by name of the table
   std::vector<std::string> libraries;

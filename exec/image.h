@@ -98,8 +98,9 @@ struct World {
   std::vector<std::byte> constant_bank;  // kConstantBankBytes: descriptors and push constants (isa/program.h)
   std::vector<ImageView> images;         // indexed by texture and image handles (isa/image_access.h)
   std::vector<Sampler> samplers;         // samplers in addition to those of the images
-  // These are Vulkan's robustBufferAccess: accesses outside of buffers and images read 0 and write nothing,
-  // and are not faults.
+  // With these, accesses outside of buffers and images read 0 and write nothing, and are not faults, as
+  // Vulkan's robustBufferAccess2 and robustImageAccess2 demand. Choice: the weaker features also allow other
+  // values, and stores to other places of the same buffer; Glint has one behaviour for all of them.
   bool robust_images = false, robust_buffers = false;
   OnFault on_fault = OnFault::Stop;
   uint32_t raygen = kNoShader;  // the ray generation shader, or the compute shader

@@ -151,19 +151,43 @@ bool MemoryOps::move_data(WarpContext& warp, const isa::Inst& inst, const isa::O
   LanePlaces at;
   LaneMask inside = lanes;
   if (!locate(warp, row, space, inside, at)) return false;
-  const bool seen = seen_.is_used() && space == Space::Global;
-  if (row.effect == Effect::Store) {
-    changes_ += !seen;
-    seen ? seen_.store(warp, inst, row, inside, at) : store_rows(warp, inst, row.memory, inside, at);
+  move_rows(warp, inst, row.effect, row.memory, space, inside, at);
+  if (inside == lanes) [[likely]]
     return true;
-  }
-  if (seen && seen_.view().touched())
-    seen_.load(warp, inst, row, inside, at);
-  else
-    load_rows(warp, inst, row.memory, inside, at);
-  if (inside != lanes) [[unlikely]]
-    load_zeros(warp, inst, row.memory, lanes & ~inside);
+  if (row.effect == Effect::Load) load_zeros(warp, inst, row.memory, lanes & ~inside);
+  if (space == Space::Global && world_.robust_buffers) move_beginnings(warp, inst, row, lanes & ~inside);
   return true;
+}
+
+void MemoryOps::move_rows(WarpContext& warp, const isa::Inst& inst, Effect effect, const isa::Memory& shape,
+                          Space space, LaneMask lanes, const LanePlaces& at) {
+  const bool seen = seen_.is_used() && space == Space::Global;
+  if (effect == Effect::Store) {
+    changes_ += !seen;
+    seen ? seen_.store(warp, inst, shape, lanes, at) : store_rows(warp, inst, shape, lanes, at);
+  } else if (seen && seen_.view().touched()) {
+    seen_.load(warp, inst, shape, lanes, at);
+  } else {
+    load_rows(warp, inst, shape, lanes, at);
+  }
+}
+
+// Moves the first parts of vectors that reach across the end of a buffer. Choice: Vulkan lets each 32 bits of
+// a vector be checked on their own, or the vector as a whole (robustBufferAccess in
+// VkPhysicalDeviceFeatures). Model: these parts cost no access.
+void MemoryOps::move_beginnings(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
+                                LaneMask lanes) {
+  LanePlaces at{};
+  for_each_lane(lanes, [&](int lane) {
+    const Address address = warp.regs.access.address[size_t(lane)];
+    if (address % (row.memory.bytes * row.memory.count)) return;
+    isa::Memory shape = row.memory;
+    while (--shape.count > 0) {
+      at[size_t(lane)] = world_.memory->find(address, uint64_t{shape.bytes} * shape.count);
+      if (!at[size_t(lane)]) continue;
+      return move_rows(warp, inst, row.effect, shape, Space::Global, LaneMask{1} << lane, at);
+    }
+  });
 }
 
 // Runs an atomic. Lanes take turns, the lowest first. Choice: PTX leaves their order open.

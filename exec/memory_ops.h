@@ -37,6 +37,9 @@ class MemoryOps {
   bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask& lanes, LanePlaces& at);
   bool move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
                  LaneMask lanes);
+  void move_rows(WarpContext& warp, const isa::Inst& inst, isa::Effect effect, const isa::Memory& shape,
+                 isa::Space space, LaneMask lanes, const LanePlaces& at);
+  void move_beginnings(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
   bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
               LaneMask lanes);
 

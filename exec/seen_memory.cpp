@@ -9,12 +9,13 @@
 
 namespace glint::exec {
 
-void SeenMemory::load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+void SeenMemory::load(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
                       const LanePlaces& at) {
-  const isa::Memory& shape = row.memory;
   const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
-  for_each_lane(lanes, [&](int lane) { is_late_ |= view_->waits(at[size_t(lane)], bytes); });
-  if (!is_late_) {
+  bool is_late = false;
+  for_each_lane(lanes, [&](int lane) { is_late |= view_->waits(at[size_t(lane)], bytes); });
+  is_late_ |= is_late;
+  if (!is_late) {
     std::array<std::array<std::byte, MemoryView::kWidest>, kLanes> scratch;
     std::array<const std::byte*, kLanes> from;
     for_each_lane(lanes, [&](int lane) {
@@ -31,9 +32,8 @@ void SeenMemory::load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
 }
 
 // Stores lanes in the same order as without a view.
-void SeenMemory::store(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
-                       const LanePlaces& at) {
-  const isa::Memory& shape = row.memory;
+void SeenMemory::store(const WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape,
+                       LaneMask lanes, const LanePlaces& at) {
   const uint32_t part = row_bytes(shape);
   std::array<std::byte, MemoryView::kWidest> data;
   for_each_lane(lanes, [&](int lane) {

@@ -20,10 +20,10 @@ class SeenMemory {
   bool is_late() const { return is_late_; }
   void be_late(bool is_late) { is_late_ = is_late; }
 
-  // `at` says where the data of each of the lanes lies.
-  void load(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+  // `at` says where the data of each of the lanes lies. `shape` may have fewer parts than the instruction.
+  void load(WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
             const LanePlaces& at);
-  void store(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
+  void store(const WarpContext& warp, const isa::Inst& inst, const isa::Memory& shape, LaneMask lanes,
              const LanePlaces& at);
   void modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes,
               const LanePlaces& at);

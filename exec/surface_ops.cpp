@@ -30,8 +30,8 @@ Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at)
   return words;
 }
 
-// Returns where a lane's surface op goes. Null, with a fault or without one, says that it goes nowhere and
-// loads 0.
+// Returns where a lane's surface op goes. Null, with a fault or without one, says that it goes nowhere. It
+// then loads what nowhere() says.
 std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane) {
   const isa::ImageAccess& op = row.image;
   const ImageView* image = images_.find(warp, row, lane);
@@ -57,7 +57,10 @@ std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, cons
     if (op.outside == isa::ImageOutside::Clamp && place.end[0] > 0) {
       for (size_t i = 0; i < 4; ++i) place.at[i] = std::clamp<int64_t>(place.at[i], 0, place.end[i] - 1);
       if (!whole) place.at[0] -= place.at[0] % bytes;
-    } else if (op.outside == isa::ImageOutside::Zero || world_.robust_images) {
+    } else if (world_.robust_images) {
+      outside_ |= LaneMask{1} << lane;
+      return nullptr;
+    } else if (op.outside == isa::ImageOutside::Zero) {
       return nullptr;
     } else {
       const bool store = row.effect != isa::Effect::SurfaceLoad;
@@ -76,7 +79,15 @@ std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, cons
   return memory;
 }
 
+// Returns what a load gives that goes nowhere: 0. Channels that the image's format lacks are those of every
+// texel when accesses outside of images are robust (Vulkan's robustImageAccess2).
+Words SurfaceOps::nowhere(const WarpContext& warp, const isa::OpRow& row, int lane) const {
+  const bool is_texel = row.effect == isa::Effect::SurfaceLoad && row.image.request == ImageRequest::Texel;
+  return is_texel && (outside_ >> lane & 1) ? keep_channels(images_.format_of(warp, lane), {}) : Words{};
+}
+
 bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  outside_ = 0;
   const ImageSlots slots(row);
   const size_t end = slots.data + num_data(row);
   LanePlaces place{};
@@ -91,7 +102,7 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
   for_each_lane(warp.regs.exec, [&](int lane) {
     const ImageLane operands(warp.regs, inst, lane);
     std::byte* const at = place[size_t(lane)];
-    Words words{};
+    Words words = at ? Words{} : nowhere(warp, row, lane);
     if (row.effect == isa::Effect::SurfaceStore) {
       for (size_t c = slots.data; c < end; ++c) words[c - slots.data] = operands.word(c);
       if (at) store_texel(row, images_.format_of(warp, lane), words, at);
@@ -116,7 +127,7 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
   return true;
 }
 
-// Does what run() does when the image is seen through a view. A lane that names no texel loads 0.
+// Does what run() does when the image is seen through a view.
 void SurfaceOps::run_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
                           const LanePlaces& place) {
   const ImageSlots slots(row);
@@ -152,7 +163,7 @@ void SurfaceOps::run_seen(WarpContext& warp, const isa::Inst& inst, const isa::O
     } else {
       const Words words =
           at ? load_texel(row, images_.format_of(warp, lane), seen_.view().read(at, bytes_of(lane), scratch))
-             : Words{};
+             : nowhere(warp, row, lane);
       for (size_t c = 0; c < slots.results; ++c) *to(c, lane) = words[c];
     }
   });

@@ -19,6 +19,7 @@ class SurfaceOps {
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
 
  private:
+  Words nowhere(const WarpContext& warp, const isa::OpRow& row, int lane) const;
   std::byte* find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane);
   void run_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const LanePlaces& place);
 
@@ -27,6 +28,7 @@ class SurfaceOps {
   SeenMemory& seen_;
   BoundImages& images_;
   TexelList& texels_;
+  LaneMask outside_ = 0;  // lanes of the last op that were outside of an image with robust access
 };
 
 }  // namespace glint::exec

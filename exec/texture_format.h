@@ -87,7 +87,8 @@ using Words = std::array<uint32_t, 4>;
 // Returns the words of a texel. Channels that a format lacks are 0, and alpha is 1 (Vulkan, "Conversion to
 // RGBA").
 Words decode(TexelFormat format, const std::byte* from);
-// Returns `words` without the channels that the format lacks, which is what a border colour becomes.
+// Returns `words` without the channels that the format lacks, which is what a border colour becomes. Zeros
+// become what a robust load outside of an image gives.
 Words keep_channels(TexelFormat format, Words words);
 
 // Writes a texel. Floats are clamped to the range of normalised formats and rounded to nearest even, and NaN

@@ -69,7 +69,9 @@ bool TextureOps::read(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
       const TexelPlace place = place_of(op, slots, operands, *image, 0);
       if (place.is_inside())
         out = reader.fetch(place.index());
-      else if (!world_.robust_images && !pass(lane, [&] { return "reads texel " + describe(place, *image); }))
+      else if (world_.robust_images)
+        out = keep_channels(image->format, {});
+      else if (!pass(lane, [&] { return "reads texel " + describe(place, *image); }))
         return false;
     } else {
       const SampleRequest request = request_of(op, slots, operands, *image);

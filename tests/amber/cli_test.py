@@ -10,6 +10,20 @@ from glint_case import ROOT, GlintTest
 
 BUFFER = "#!amber\nBUFFER b DATA_TYPE int32 DATA 1 2 END\n"
 GOOD, BAD = BUFFER + "EXPECT b IDX 4 EQ 2\n", BUFFER + "EXPECT b IDX 4 EQ 3\n"
+PAST = """#!amber
+SHADER compute s GLSL
+#version 450
+layout(binding = 0) buffer B { uint v[]; };
+void main() { v[2] = 9; }
+END
+BUFFER b DATA_TYPE uint32 DATA 1 2 END
+PIPELINE compute p
+  ATTACH s
+  BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0
+END
+RUN p 1 1 1
+EXPECT b IDX 0 EQ 1 2
+"""
 GRAPHICS = "#!amber\nPIPELINE graphics p\nEND\n"
 
 
@@ -45,6 +59,12 @@ class Amber(GlintTest):
         done = self.glint("run", ROOT / "tests/amber/scripts/shared.amber", "--mode", "timing")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"shared.amber: [1-9][0-9]+ cycles")
+
+    def test_accesses_outside_of_buffers_are_faults_with_strict(self):
+        script = self.write("past.amber", PAST)
+        self.check(self.glint("run", script), 0, "1 passed, 0 failed, 0 unsupported")
+        self.check(self.glint("run", script, "--strict"), 4, "0 passed, 1 failed, 0 unsupported", "past.amber:12: ")
+        self.expect(2, ["--strict belongs to Amber scripts"], "run", "WKND", "--strict")
 
     def test_other_files_beside_scripts_are_refused(self):
         done = self.run_scripts(GOOD, arguments=["WKND"])

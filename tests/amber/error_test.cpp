@@ -126,25 +126,58 @@ TEST_CASE("messages on SPIR-V count the lines of the script", "[amber]") {
   CHECK(contains(outcome.message, "t.amber:4"));
 }
 
-TEST_CASE("a store outside of a buffer fails with the lines of RUN and of the shader", "[amber]") {
-  const Outcome outcome = outcome_of(kPipeline + "RUN p 1 1 1\n");
+LaunchOptions strict(exec::OnFault on_fault = exec::OnFault::Stop) {
+  LaunchOptions options;
+  options.strict = true, options.on_fault = on_fault;
+  return options;
+}
+
+TEST_CASE("in strict runs a store outside of a buffer fails with the lines of RUN and of the shader",
+          "[amber]") {
+  const Outcome outcome = outcome_of(kPipeline + "RUN p 1 1 1\n", strict());
   CHECK(outcome.exit == Exit::Fault);
   CHECK(contains(outcome.message, "t.amber:12"));
   CHECK(contains(outcome.message, "t.amber:5"));
 }
 
-TEST_CASE("under robustBufferAccess a store outside of a buffer is dropped and is not a fault", "[amber]") {
-  const Outcome outcome = outcome_of("DEVICE_FEATURE robustBufferAccess\n" + kPipeline + "RUN p 1 1 1\n");
-  CHECK(outcome.exit == Exit::Ok);
-  CHECK(outcome.message == "");
-  CHECK(outcome.faults.empty());
+TEST_CASE(
+    "a store outside of a buffer is dropped and is no fault; in strict runs only where that is declared",
+    "[amber]") {
+  const std::string script = kPipeline + "RUN p 1 1 1\nEXPECT b IDX 0 EQ 1 2\n";
+  for (const Outcome& outcome :
+       {outcome_of(script), outcome_of("DEVICE_FEATURE robustBufferAccess\n" + script, strict()),
+        outcome_of("DEVICE_FEATURE Robustness2Features.robustBufferAccess2\n" + script, strict())}) {
+    CHECK(outcome.exit == Exit::Ok);
+    CHECK(outcome.message == "");
+    CHECK(outcome.faults.empty());
+  }
+}
+
+TEST_CASE("shared memory and misaligned addresses are no matter of robust access", "[amber]") {
+  const std::string script =
+      "DEVICE_FEATURE robustBufferAccess\nSHADER compute s GLSL\n#version 450\nlayout(binding = 0) buffer B "
+      "{ "
+      "uint v[]; };\nshared uint s[4];\nvoid main() { s[v[0]] = 1; v[0] = s[v[1]]; }\nEND\n"
+      "BUFFER b DATA_TYPE uint32 DATA 5000 1 END\nPIPELINE compute p\n ATTACH s\n BIND BUFFER b AS storage "
+      "DESCRIPTOR_SET 0 BINDING 0\nEND\nRUN p 1 1 1\n";
+  CHECK(contains(outcome_of(script).message, "the block's shared memory"));
+}
+
+TEST_CASE("indices that the optimiser cannot clamp make a script unsupported, with its reason", "[amber]") {
+  const std::string script =
+      "SHADER compute s GLSL\n#version 460\n#extension GL_EXT_buffer_reference : require\n"
+      "layout(buffer_reference) buffer R { uint v[]; };\nlayout(binding = 0) buffer B { R r; };\n"
+      "void main() { r.v[1] = 2; }\nEND\nBUFFER b DATA_TYPE uint32 DATA 1 2 END\nPIPELINE compute p\n ATTACH "
+      "s\n SHADER_OPTIMIZATION s\n--graphics-robust-access\nEND\n BIND BUFFER b AS storage DESCRIPTOR_SET 0 "
+      "BINDING 0\nEND\nRUN p 1 1 1\n";
+  const Outcome outcome = outcome_of(script);
+  CHECK(outcome.exit == Exit::Unsupported);
+  CHECK(contains(outcome.message, "the indices of shader 's' cannot be clamped"));
+  CHECK(contains(outcome.message, "ddressing"));
 }
 
 TEST_CASE("a fault that is let pass is told with the lines of RUN and of the shader", "[amber]") {
-  LaunchOptions options;
-  options.on_fault = exec::OnFault::Warn;
-  const Outcome outcome =
-      run_script(parse_script("#!amber\n" + kPipeline + "RUN p 1 1 1\n", "t.amber"), options);
+  const Outcome outcome = outcome_of(kPipeline + "RUN p 1 1 1\n", strict(exec::OnFault::Warn));
   CHECK(outcome.exit == Exit::Ok);
   REQUIRE(outcome.faults.size() == 1);
   CHECK(contains(outcome.faults[0], "t.amber:12: "));
@@ -172,10 +205,8 @@ const std::vector<std::pair<std::string, std::string>> kUnbound = {
      "rayQueryEXT q; rayQueryInitializeEXT(q, u, 0, 0xff, vec3(0), 0, vec3(1), 1); v[0] = "
      "rayQueryProceedEXT(q) ? 1 : 0"}};
 
-std::string unbound_script(const std::string& declarations, const std::string& statement,
-                           const std::string& before = "") {
-  return before +
-         "SHADER compute s GLSL\n#version 460\n#extension GL_EXT_ray_query : require\nlayout(binding = 0) "
+std::string unbound_script(const std::string& declarations, const std::string& statement) {
+  return "SHADER compute s GLSL\n#version 460\n#extension GL_EXT_ray_query : require\nlayout(binding = 0) "
          "buffer B { uint v[]; };\n" +
          declarations + "\nvoid main() { " + statement +
          "; }\nEND\nBUFFER b DATA_TYPE uint32 DATA 5 6 END\nIMAGE t FORMAT R32_SFLOAT DIM_2D WIDTH 1 HEIGHT "
@@ -192,8 +223,9 @@ std::string unbound_script(const std::string& declarations, const std::string& s
 TEST_CASE("the use of a binding that nobody bound is a fault that names set, binding, line and launch id",
           "[amber]") {
   for (const auto& [declarations, statement] : kUnbound)
-    for (const char* before : {"", "DEVICE_FEATURE robustBufferAccess\n"}) {
-      const Outcome outcome = outcome_of(unbound_script(declarations, statement, before));
+    for (const bool is_strict : {false, true}) {
+      const Outcome outcome =
+          outcome_of(unbound_script(declarations, statement), is_strict ? strict() : LaunchOptions{});
       INFO(declarations << "\n-> " << outcome.message);
       CHECK(outcome.exit == Exit::Fault);
       CHECK(contains(outcome.message, "set 1 binding 3"));
@@ -204,11 +236,8 @@ TEST_CASE("the use of a binding that nobody bound is a fault that names set, bin
 }
 
 TEST_CASE("the use of a binding that nobody bound, let pass, reads 0 and writes nothing", "[amber]") {
-  LaunchOptions options;
-  options.on_fault = exec::OnFault::Warn;
   for (const auto& [declarations, statement] : kUnbound) {
-    const Outcome outcome =
-        run_script(parse_script("#!amber\n" + unbound_script(declarations, statement), "t.amber"), options);
+    const Outcome outcome = outcome_of(unbound_script(declarations, statement), strict(exec::OnFault::Warn));
     INFO(declarations << "\n-> " << outcome.message);
     CHECK(outcome.exit == Exit::Ok);
     REQUIRE(!outcome.faults.empty());
@@ -233,7 +262,8 @@ TEST_CASE("an element of an array of descriptors that nobody bound is a fault, t
   CHECK(contains(run("2").message, "uses set 0 binding 1 (u), to which nothing is bound"));
 }
 
-TEST_CASE("an access past the range of a descriptor is a fault though the buffer goes on", "[amber]") {
+TEST_CASE("in strict runs an access past the range of a descriptor is a fault though the buffer goes on",
+          "[amber]") {
   const auto script = [](const char* bindings, const char* expected) {
     return std::string(
                "SHADER compute s GLSL\n#version 450\nlayout(binding = 0) buffer A { uint a[]; "
@@ -245,17 +275,16 @@ TEST_CASE("an access past the range of a descriptor is a fault though the buffer
   };
   const std::string near = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 0 DESCRIPTOR_RANGE 16\n",
                     far = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 1 DESCRIPTOR_OFFSET 256\n";
-  const Outcome outcome = outcome_of(script((near + far).c_str(), ""));
+  const Outcome outcome = outcome_of(script((near + far).c_str(), ""), strict());
   CHECK(outcome.exit == Exit::Fault);
   CHECK(contains(outcome.message, "0 bytes past the end of 'x, bytes 0 to 16' (16 bytes)"));
   const Outcome robust =
-      outcome_of("DEVICE_FEATURE robustBufferAccess\n" +
-                 script((near + far).c_str(), "EXPECT x IDX 0 EQ 4 2\nEXPECT x IDX 252 EQ 64 0 66\n"));
+      outcome_of(script((near + far).c_str(), "EXPECT x IDX 0 EQ 4 2\nEXPECT x IDX 252 EQ 64 0 66\n"));
   CHECK(robust.message == "");
   CHECK(robust.exit == Exit::Ok);
   // When the ranges overlap, the end of the buffer is the limit.
   const std::string all = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 1\n";
-  CHECK(outcome_of(script((near + all).c_str(), "EXPECT x IDX 0 EQ 5\n")).exit == Exit::Ok);
+  CHECK(outcome_of(script((near + all).c_str(), "EXPECT x IDX 0 EQ 5\n"), strict()).exit == Exit::Ok);
 }
 
 TEST_CASE("a buffer bound where the shader declares an image is an error of the script", "[amber]") {

@@ -13,9 +13,10 @@ Outcome run(const std::string& name, bool timing) {
 }
 
 TEST_CASE("scripts of every kind pass on the functional machine", "[amber]") {
-  for (const char* name : {"values", "shared", "spirv", "layouts", "images", "rays", "options", "resources",
-                           "entries", "numbers", "files", "sections", "versions", "first_hit", "strides",
-                           "far_binding", "chosen_arrays", "samples"}) {
+  for (const char* name :
+       {"values",    "shared",      "spirv",         "layouts", "images",   "rays",     "options",
+        "resources", "entries",     "numbers",       "files",   "sections", "versions", "first_hit",
+        "strides",   "far_binding", "chosen_arrays", "samples", "robust",   "clamped"}) {
     const Outcome outcome = run(name, false);
     INFO(name << ": " << outcome.message);
     CHECK(outcome.verdict == Verdict::Passed);
@@ -26,7 +27,7 @@ TEST_CASE("scripts of every kind pass on the functional machine", "[amber]") {
 }
 
 TEST_CASE("a script passes on the timing machine and takes time there", "[amber]") {
-  for (const char* name : {"shared", "rays"}) {
+  for (const char* name : {"shared", "rays", "robust"}) {
     const Outcome outcome = run(name, true);
     INFO(name << ": " << outcome.message);
     CHECK(outcome.verdict == Verdict::Passed);

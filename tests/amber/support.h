@@ -7,9 +7,7 @@
 
 namespace glint::amber {
 
-inline Outcome outcome_of(const std::string& body, bool timing = false) {
-  LaunchOptions options;
-  options.timing = timing;
+inline Outcome outcome_of(const std::string& body, const LaunchOptions& options = {}) {
   Outcome out;
   try {
     out = run_script(parse_script("#!amber\n" + body, "t.amber"), options);

@@ -21,6 +21,7 @@ struct RunOptions {
   LaunchOptions launch;
   std::string kernel_launch;      // launch file of a kernel
   std::vector<std::string> more;  // Amber scripts after the first
+  bool strict = false;            // for Amber scripts
 };
 
 Exit run(const Session& session, const RunOptions& options) {
@@ -31,8 +32,11 @@ Exit run(const Session& session, const RunOptions& options) {
                       "a script has no run directory");
     std::vector<std::string> scripts = {what};
     scripts.insert(scripts.end(), options.more.begin(), options.more.end());
-    return run_amber(session, scripts, options.launch);
+    return run_amber(session, scripts, options.launch, options.strict);
   }
+  if (options.strict)
+    throw UserError({}, "--strict belongs to Amber scripts",
+                    "in other launches every access outside of a buffer or an image is a fault");
   if (!options.more.empty())
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
                     "only Amber scripts can be run several at a time");
@@ -68,6 +72,10 @@ void add_scene_options(Command command, RunOptions& options) {
   command.add_option("--assets", options.scene.assets, "Folder that has the original scene data")
       .type_name("DIR")
       .envname("GLINT_ASSETS");
+  command.add_flag(
+      "--strict", options.strict,
+      "Let accesses outside of buffers and images be faults in Amber scripts that do not declare "
+      "robust access");
   command.add_flag("--instancing", options.scene.instancing,
                    "Let models that are affine copies of another one share its structure and vertices");
 }

@@ -14,8 +14,8 @@ bool names_script(const std::string& what) {
   return what.ends_with(".amber");
 }
 
-Exit run_amber(const Session& session, const std::vector<std::string>& scripts,
-               const LaunchOptions& options) {
+Exit run_amber(const Session& session, const std::vector<std::string>& scripts, const LaunchOptions& options,
+               bool strict) {
   for (const std::string& path : scripts)
     if (!names_script(path))
       throw UserError({}, fmt::format("'{}' is not an Amber script", path),
@@ -23,7 +23,7 @@ Exit run_amber(const Session& session, const std::vector<std::string>& scripts,
   amber::LaunchOptions launch;
   launch.gpu = gpu_of(session.resources, options);
   launch.timing = options.mode_given && options.mode == "timing", launch.no_skip = options.no_skip,
-  launch.threads = options.threads, launch.on_fault = options.on_fault;
+  launch.threads = options.threads, launch.on_fault = options.on_fault, launch.strict = strict;
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   exec::PrintLog prints(options.print_limit);
   launch.cache = cache.get(), launch.prints = &prints;

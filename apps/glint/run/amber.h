@@ -15,6 +15,9 @@ bool names_script(const std::string& what);  // returns whether it is a path tha
 // to 5 for an error of that kind. For several scripts, it returns 1 when any fails, else 3 when any is
 // unsupported. Scripts run on the timing machine when the command line names the mode timing, and otherwise
 // on the functional machine.
-Exit run_amber(const Session& session, const std::vector<std::string>& scripts, const LaunchOptions& options);
+// With `strict`, an access outside of a buffer or an image is a fault unless the script declares robust
+// access.
+Exit run_amber(const Session& session, const std::vector<std::string>& scripts, const LaunchOptions& options,
+               bool strict);
 
 }  // namespace glint::app

@@ -80,4 +80,20 @@ TEST_CASE("robust buffers give 0 and drop stores outside without noting it") {
   CHECK(launch.words(0, 2) == std::vector<uint32_t>{0, 0});
 }
 
+TEST_CASE("of a vector that reaches across the end of a robust buffer the words inside are moved") {
+  TextLaunch launch(
+      "    ld.param.b64 %rd2, [0];\n    ld.global.v4.b32 {%r10, %r11, %r12, %r13}, [%rd2 + 4080];\n"
+      "    st.global.v4.b32 [%rd2], {%r10, %r11, %r12, %r13};\n    mov.b32 %r14, 7;\n"
+      "    st.global.v4.b32 [%rd2 + 4080], {%r14, %r14, %r14, %r14};\n"
+      "    ld.global.b64 %rd16, [%rd2 + 4088];\n    st.global.b64 [%rd2 + 16], %rd16;\n    exit;\n",
+      {.block = {1, 1, 1}, .buffer_words = 1023});
+  launch.world.robust_buffers = true;
+  for (uint32_t i = 0; i < 3; ++i) launch.word(1020 + i) = 21 + i;
+  launch.word(4) = launch.word(5) = 9;
+  CHECK(launch.fault() == "");
+  CHECK(launch.words(0, 4) == std::vector<uint32_t>{21, 22, 23, 0});
+  CHECK(launch.words(1020, 3) == std::vector<uint32_t>{7, 7, 7});
+  CHECK(launch.words(4, 2) == std::vector<uint32_t>{0, 0});  // 64 bits are one value
+}
+
 }  // namespace glint::exec

@@ -100,7 +100,7 @@ TEST_CASE(
   lab.run_one("sust.p.2d.v4.b32.clamp", store);
   CHECK(word_at(lab, handle, 12) == 44);
   lab.world.robust_images = true;
-  CHECK(lab.run_one("suld.p.2d.v4.b32.trap", outside) == std::vector<uint32_t>{0, 0, 0, 0});
+  CHECK(lab.run_one("suld.p.2d.v4.b32.trap", outside) == std::vector<uint32_t>{0, 0, 0, 1});
   CHECK(!lab.fault);
 }
 
