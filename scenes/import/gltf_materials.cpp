@@ -3,11 +3,15 @@
 #include "scenes/import/gltf_materials.h"
 
 #include <cstdint>
+#include <fmt/format.h>
 #include <map>
+#include <string>
 #include <tiny_gltf.h>
 #include <tuple>
 #include <utility>
 
+#include "base/diagnostics.h"
+#include "scenes/import/gltf_names.h"
 #include "scenes/lumibench/builders.h"
 
 namespace glint::scenes {
@@ -24,7 +28,8 @@ double number_of(const tinygltf::Material& m, const char* extension, const char*
 
 class MaterialReader {
  public:
-  MaterialReader(Scene& scene, const tinygltf::Model& file) : scene_(scene), file_(file) {}
+  MaterialReader(Scene& scene, const tinygltf::Model& file, const std::string& path)
+      : scene_(scene), file_(file), path_(path) {}
 
   Material read(const tinygltf::Material& m) {
     const tinygltf::PbrMetallicRoughness& pbr = m.pbrMetallicRoughness;
@@ -52,7 +57,8 @@ class MaterialReader {
   std::pair<double, double> metal_and_roughness(const tinygltf::PbrMetallicRoughness& pbr) const {
     double metal = pbr.metallicFactor, roughness = pbr.roughnessFactor;
     if (pbr.metallicRoughnessTexture.index < 0) return {metal, roughness};
-    const Pixels& texels = image_of(file_.textures.at(size_t(pbr.metallicRoughnessTexture.index))).image;
+    const Pixels& texels =
+        image_of(named(file_.textures, pbr.metallicRoughnessTexture.index, "texture", path_)).image;
     double green = 0, blue = 0;
     for (size_t i = 0; i + 3 < texels.size(); i += 4) green += texels[i + 1], blue += texels[i + 2];
     const double scale = 4.0 / 255 / double(std::max<size_t>(texels.size(), 4));
@@ -60,7 +66,13 @@ class MaterialReader {
   }
 
   const tinygltf::Image& image_of(const tinygltf::Texture& texture) const {
-    return file_.images.at(size_t(texture.source));
+    const tinygltf::Image& image = named(file_.images, texture.source, "image", path_);
+    const std::string name = name_of(image.uri.empty() ? image.name : image.uri, texture.source);
+    // The library goes on where it finds no file, and leaves the picture empty.
+    if (image.image.empty())
+      throw UserError({path_}, fmt::format("the picture of image {} cannot be read", name),
+                      "put the file where the glTF file names it, or export with embedded pictures");
+    return image;
   }
 
   // Choice: blending becomes a mask of one half, because the shaders know only hits and misses.
@@ -70,7 +82,7 @@ class MaterialReader {
     const double factor = c.size() == 4 ? c[3] : 1;
     const auto [place, is_new] = known_.try_emplace({index, cutoff, factor}, int32_t(scene_.textures.size()));
     if (!is_new) return place->second;
-    const tinygltf::Texture& source = file_.textures.at(size_t(index));
+    const tinygltf::Texture& source = named(file_.textures, index, "texture", path_);
     const tinygltf::Image& image = image_of(source);
     Texture out{.name = image.name.empty() ? image.uri : image.name,
                 .width = uint32_t(image.width),
@@ -78,8 +90,8 @@ class MaterialReader {
                 .rgba = image.image};
     out.srgb = true;  // glTF 2.0, 3.9.2: base colours are sRGB
     // Model: mirrored repetition becomes plain repetition.
-    out.repeat = source.sampler < 0 ||
-                 file_.samplers.at(size_t(source.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    out.repeat = source.sampler < 0 || named(file_.samplers, source.sampler, "sampler", path_).wrapS !=
+                                           TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     for (size_t i = 3; i < out.rgba.size(); i += 4) {
       const bool hidden = double(out.rgba[i]) * factor < cutoff * 255;
       scene_.alpha_test |= hidden;
@@ -91,14 +103,15 @@ class MaterialReader {
 
   Scene& scene_;
   const tinygltf::Model& file_;
+  const std::string& path_;
   // Maps texture, cutoff and alpha factor to the index in the scene.
   std::map<std::tuple<int, double, double>, int32_t> known_;
 };
 
 }  // namespace
 
-std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file) {
-  MaterialReader reader(scene, file);
+std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file, const std::string& path) {
+  MaterialReader reader(scene, file, path);
   std::vector<int32_t> indices;
   const auto add = [&](const Material& material) {
     indices.push_back(int32_t(scene.materials.size()));

@@ -16,7 +16,7 @@ namespace glint::scenes {
 // Appends the file's materials to the scene, and one of grey 0.7 for primitives without a material. Returns
 // their indices in the scene. Sets Scene::alpha_test when a material is masked. Base-colour textures keep
 // their sRGB flag and wrapping; texels that a mask hides have alpha 0, and all others have 255. Throws
-// std::out_of_range when an index names nothing.
-std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file);
+// UserError at `path` when a number names nothing or a texture has no picture.
+std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file, const std::string& path);
 
 }  // namespace glint::scenes

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/gltf_mesh.h"
 
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "scenes/import/gltf_names.h"
 #include "scenes/mesh.h"
 
 namespace glint::scenes {
@@ -15,17 +17,25 @@ namespace {
 
 class MeshReader {
  public:
-  MeshReader(const tinygltf::Model& file, const std::vector<int32_t>& materials, const std::string& path)
-      : file_(file), materials_(materials), path_(path) {}
+  MeshReader(const tinygltf::Model& file, int mesh, const std::vector<int32_t>& materials,
+             const std::string& path)
+      : file_(file),
+        name_(name_of(file.meshes[size_t(mesh)].name, mesh)),
+        materials_(materials),
+        path_(path) {}
 
   void add(const tinygltf::Primitive& p) {
     if (p.mode != TINYGLTF_MODE_TRIANGLES) fail("only lists of triangles are read");
     const tinygltf::Accessor* positions = floats(p, "POSITION", TINYGLTF_TYPE_VEC3);
     if (!positions) fail("a primitive has no positions");
-    const int32_t material = p.material < 0 ? materials_.back() : materials_.at(size_t(p.material));
+    const int32_t material =
+        p.material < 0 ? materials_.back() : named(materials_, p.material, "material", path_);
     std::vector<Vertex> vertices(positions->count);
-    read<Vec3>(*positions, vertices,
-               [&](Vertex& v, const Vec3& at) { v.position = at, v.material = material; });
+    read<Vec3>(*positions, vertices, [&](Vertex& v, const Vec3& at) {
+      if (!std::isfinite(at[0]) || !std::isfinite(at[1]) || !std::isfinite(at[2]))
+        fail(fmt::format("a position is ({}, {}, {})", at[0], at[1], at[2]));
+      v.position = at, v.material = material;
+    });
     const tinygltf::Accessor* normals = floats(p, "NORMAL", TINYGLTF_TYPE_VEC3);
     if (normals) read<Vec3>(*normals, vertices, [](Vertex& v, const Vec3& at) { v.normal = at; });
     if (const auto* coordinates = floats(p, "TEXCOORD_0", TINYGLTF_TYPE_VEC2))
@@ -35,14 +45,16 @@ class MeshReader {
   Model model;
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw UserError({path_}, what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw UserError({path_}, fmt::format("in mesh {}: {}", name_, what));
+  }
 
   // Calls put(element, bytes) for each of an accessor's elements of `bytes` bytes.
   template <class Put>
   void each(const tinygltf::Accessor& accessor, size_t bytes, const Put& put) const {
     if (accessor.bufferView < 0 || accessor.sparse.isSparse) fail("sparse accessors are not read");
-    const tinygltf::BufferView& view = file_.bufferViews.at(size_t(accessor.bufferView));
-    const std::vector<unsigned char>& data = file_.buffers.at(size_t(view.buffer)).data;
+    const tinygltf::BufferView& view = named(file_.bufferViews, accessor.bufferView, "buffer view", path_);
+    const std::vector<unsigned char>& data = named(file_.buffers, view.buffer, "buffer", path_).data;
     const int stride = accessor.ByteStride(view);
     if (stride < 1) fail("an accessor has a stride that does not fit its type");
     const size_t first = view.byteOffset + accessor.byteOffset;
@@ -65,7 +77,7 @@ class MeshReader {
   const tinygltf::Accessor* floats(const tinygltf::Primitive& p, const char* name, int type) const {
     const auto found = p.attributes.find(name);
     if (found == p.attributes.end()) return nullptr;
-    const tinygltf::Accessor& accessor = file_.accessors.at(size_t(found->second));
+    const tinygltf::Accessor& accessor = named(file_.accessors, found->second, "accessor", path_);
     if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.type != type)
       fail(fmt::format("{} must be float", name));
     return &accessor;
@@ -77,7 +89,7 @@ class MeshReader {
       for (size_t i = 0; i < count / 3 * 3; ++i) out.push_back(uint32_t(i));
       return out;
     }
-    const tinygltf::Accessor& accessor = file_.accessors.at(size_t(p.indices));
+    const tinygltf::Accessor& accessor = named(file_.accessors, p.indices, "accessor", path_);
     const int bytes = tinygltf::GetComponentSizeInBytes(uint32_t(accessor.componentType));
     if (bytes != 1 && bytes != 2 && bytes != 4) fail("indices have 1, 2 or 4 bytes");
     each(accessor, size_t(bytes), [&](size_t, const unsigned char* at) {
@@ -110,17 +122,19 @@ class MeshReader {
   }
 
   const tinygltf::Model& file_;
+  const std::string name_;  // of the mesh, for messages
   const std::vector<int32_t>& materials_;
   const std::string& path_;
 };
 
 }  // namespace
 
-Model read_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh,
-                const std::vector<int32_t>& materials, const std::string& path) {
-  MeshReader reader(file, materials, path);
-  for (const tinygltf::Primitive& primitive : mesh.primitives) reader.add(primitive);
-  reader.model.name = mesh.name;
+Model read_mesh(const tinygltf::Model& file, int mesh, const std::vector<int32_t>& materials,
+                const std::string& path) {
+  const tinygltf::Mesh& source = named(file.meshes, mesh, "mesh", path);
+  MeshReader reader(file, mesh, materials, path);
+  for (const tinygltf::Primitive& primitive : source.primitives) reader.add(primitive);
+  reader.model.name = source.name;
   return std::move(reader.model);
 }
 

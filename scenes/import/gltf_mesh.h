@@ -9,17 +9,16 @@
 
 namespace tinygltf {
 class Model;
-struct Mesh;
-}  // namespace tinygltf
+}
 
 namespace glint::scenes {
 
-// Returns all primitives of a mesh as one model, in the mesh's own space. `materials` holds the scene's
-// indices of the file's materials, and one more at the end for primitives that name none. Normals are flat
-// where the file has none (glTF 2.0, 3.7.2.1).
-// Throws UserError at `path` for primitives other than triangles, attributes that are not floats, and
-// accessors that leave their buffers. Throws std::out_of_range when an index names nothing.
-Model read_mesh(const tinygltf::Model& file, const tinygltf::Mesh& mesh,
-                const std::vector<int32_t>& materials, const std::string& path);
+// Returns all primitives of the file's mesh `mesh` as one model, in the mesh's own space. `materials` holds
+// the scene's indices of the file's materials, and one more at the end for primitives that name none. Normals
+// are flat where the file has none (glTF 2.0, 3.7.2.1). Throws UserError at `path` for numbers that name
+// nothing, primitives other than triangles, attributes that are not floats, positions that are not finite,
+// and accessors that leave their buffers.
+Model read_mesh(const tinygltf::Model& file, int mesh, const std::vector<int32_t>& materials,
+                const std::string& path);
 
 }  // namespace glint::scenes

@@ -3,21 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 #include <map>
-#include <stdexcept>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <system_error>
 #include <tiny_gltf.h>
 #include <utility>
+#include <vector>
 
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 #include "scenes/import/gltf_materials.h"
 #include "scenes/import/gltf_mesh.h"
+#include "scenes/import/gltf_names.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/import/texture_loader.h"
 #include "scenes/lumibench/builders.h"
@@ -26,8 +34,7 @@
 namespace glint::scenes {
 namespace {
 
-using Matrix = glm::dmat4;     // column-major, as in glTF
-constexpr int kDeepest = 256;  // levels of nodes; more than this are a loop
+using Matrix = glm::dmat4;  // column-major, as in glTF
 
 // Lists extensions without which the picture is still usable. Files that require another extension are
 // refused.
@@ -56,6 +63,18 @@ Vec3 column(const Matrix& m, size_t c) {
   return Vec3(m[c]);
 }
 
+// Says whether rays can be taken into the space of an instance. The builder of structures inverts in floats.
+bool can_be_inverted(const Matrix& m) {
+  const Affine to_world = affine(m);
+  const glm::mat3 to_mesh = glm::inverse(glm::mat3(glm::mat4(m)));
+  const auto is_finite = [](const auto& column) {
+    return !glm::any(glm::isnan(column) || glm::isinf(column));
+  };
+  bool all = true;
+  for (size_t i = 0; i < 3; ++i) all = all && is_finite(to_world[i]) && is_finite(to_mesh[i]);
+  return all;
+}
+
 class Nodes {
  public:
   Nodes(Scene& scene, const tinygltf::Model& file, const std::string& path, const LoadOptions& options)
@@ -63,18 +82,24 @@ class Nodes {
         file_(file),
         path_(path),
         options_(options),
-        materials_(add_gltf_materials(scene, file)) {}
+        materials_(add_gltf_materials(scene, file, path)),
+        has_parent_(file.nodes.size()) {}
 
-  void add(int index, const Matrix& above, int depth) {
-    if (depth > kDeepest) throw UserError({path_}, "its nodes form a loop");
-    const tinygltf::Node& node = file_.nodes.at(size_t(index));
-    const Matrix matrix = above * local_matrix(node);
-    if (node.mesh >= 0) scene_.instances.push_back({model_of(node.mesh), affine(matrix)});
-    if (node.camera >= 0 && !has_camera_) camera(file_.cameras.at(size_t(node.camera)), matrix);
-    if (const auto light = node.extensions.find("KHR_lights_punctual");
-        light != node.extensions.end() && light->second.Has("light"))
-      lamp(file_.lights.at(size_t(light->second.Get("light").GetNumberAsInt())), matrix);
-    for (const int child : node.children) add(child, matrix, depth + 1);
+  // Adds a node and those below it. The nodes of a file are trees (glTF 2.0, 3.5.2), so none comes twice.
+  void add(int root) {
+    std::vector<std::pair<int, Matrix>> open{{root, Matrix(1)}};
+    while (!open.empty()) {
+      const auto [index, above] = open.back();
+      open.pop_back();
+      const tinygltf::Node& node = named(file_.nodes, index, "node", path_);
+      if (has_parent_[size_t(index)])
+        fail(node, index, "it has two parents or stands below itself, and nodes form trees");
+      has_parent_[size_t(index)] = true;
+      const Matrix matrix = above * local_matrix(node);
+      add_content(node, index, matrix);
+      // The last child is put first, so that nodes come in the order of the file.
+      for (size_t i = node.children.size(); i-- > 0;) open.emplace_back(node.children[i], matrix);
+    }
   }
 
   // Removes instances without triangles, which nothing could name, and adds the lamp and the sky.
@@ -100,10 +125,26 @@ class Nodes {
   static constexpr float kLampSize = 0.05f;
   static constexpr float kLampColor = 15;  // like the lamps of LumiBench's scenes
 
+  [[noreturn]] void fail(const tinygltf::Node& node, int index, const std::string& what) const {
+    throw UserError({path_}, fmt::format("node {}: {}", name_of(node.name, index), what));
+  }
+
+  void add_content(const tinygltf::Node& node, int index, const Matrix& matrix) {
+    if (node.mesh >= 0) {
+      if (!can_be_inverted(matrix))
+        fail(node, index, "its transform flattens its mesh or is not finite, and a ray cannot follow it");
+      scene_.instances.push_back({model_of(node.mesh), affine(matrix)});
+    }
+    if (node.camera >= 0 && !has_camera_) camera(named(file_.cameras, node.camera, "camera", path_), matrix);
+    if (const auto light = node.extensions.find("KHR_lights_punctual");
+        light != node.extensions.end() && light->second.Has("light"))
+      lamp(named(file_.lights, light->second.Get("light").GetNumberAsInt(), "light", path_), matrix);
+  }
+
   uint32_t model_of(int mesh) {
     const auto [place, is_new] = models_.try_emplace(mesh, uint32_t(scene_.models.size()));
     if (is_new) {
-      scene_.models.push_back(read_mesh(file_, file_.meshes.at(size_t(mesh)), materials_, path_));
+      scene_.models.push_back(read_mesh(file_, mesh, materials_, path_));
       if (options_.progress) options_.progress(double(models_.size()) / double(file_.meshes.size()));
     }
     return place->second;
@@ -137,6 +178,7 @@ class Nodes {
   const std::string& path_;
   const LoadOptions& options_;
   const std::vector<int32_t> materials_;
+  std::vector<bool> has_parent_;  // of each node: whether it was added
   std::map<int, uint32_t> models_;
   bool has_camera_ = false, has_lamp_ = false;
 };
@@ -164,9 +206,24 @@ std::string note_of(const tinygltf::Model& file) {
   return note;
 }
 
+bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
+  const std::optional<std::string> text = read_regular_file(path);
+  if (text) bytes->assign(text->begin(), text->end());
+  if (!text) *error += path + " is no file that can be read";
+  return text.has_value();
+}
+
+bool is_regular_file(const std::string& path, void*) {
+  std::error_code failed;
+  return std::filesystem::is_regular_file(path, failed);
+}
+
 tinygltf::Model read_file(const std::string& path) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(decode, nullptr);
+  // The library's own functions wait for the writer when a file names a pipe.
+  loader.SetFsCallbacks(
+      {is_regular_file, tinygltf::ExpandFilePath, read_whole_file, tinygltf::WriteWholeFile, nullptr});
   tinygltf::Model file;
   std::string error, warning;
   const bool good = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
@@ -186,15 +243,10 @@ tinygltf::Model read_file(const std::string& path) {
 Scene load_gltf(const std::string& path, const LoadOptions& options) {
   const tinygltf::Model file = read_file(path);
   Scene scene;
-  try {
-    Nodes nodes(scene, file, path, options);
-    if (file.scenes.empty()) throw UserError({path}, "it has no scene");
-    for (const int node : file.scenes.at(size_t(std::max(0, file.defaultScene))).nodes)
-      nodes.add(node, Matrix(1), 0);
-    nodes.finish();
-  } catch (const std::out_of_range&) {
-    throw UserError({path}, "it names something that is not there");
-  }
+  Nodes nodes(scene, file, path, options);
+  for (const int node : named(file.scenes, std::max(0, file.defaultScene), "scene", path).nodes)
+    nodes.add(node);
+  nodes.finish();
   scene.note = note_of(file);
   return scene;
 }

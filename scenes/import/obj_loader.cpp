@@ -8,13 +8,15 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <iterator>
 #include <map>
+#include <optional>
 #include <tiny_obj_loader.h>
 #include <unordered_map>
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
+#include "scenes/import/obj_check.h"
 #include "scenes/import/texture_loader.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"
@@ -60,8 +62,9 @@ Vertex corner_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& in
 }
 
 std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::optional<std::string> text = read_regular_file(path);
+  if (!text) throw UserError({path}, "this file cannot be read", "expected a Wavefront OBJ file");
+  return std::move(*text);
 }
 
 bool parse(tinyobj::ObjReader& reader, const std::string& path) {
@@ -69,11 +72,15 @@ bool parse(tinyobj::ObjReader& reader, const std::string& path) {
   config.triangulate = false;  // The loader's own triangulation is not a fan.
   config.vertex_color = false;
   const std::vector<std::string> parts = parts_of(path);
-  if (parts.empty()) return reader.ParseFromFile(path, config);
+  if (parts.empty()) {
+    check_obj(contents(path), path);
+    return reader.ParseFromFile(path, config);
+  }
   std::string text;
   for (const std::string& part : parts) text += contents(part);
-  return reader.ParseFromString(
-      text, contents(std::filesystem::path(path).replace_extension(".mtl").string()), config);
+  check_obj(text, path);
+  const std::string library = std::filesystem::path(path).replace_extension(".mtl").string();
+  return reader.ParseFromString(text, read_regular_file(library).value_or(""), config);
 }
 
 tinyobj::ObjReader read(const std::string& path) {

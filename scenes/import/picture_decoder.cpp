@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/import/picture_decoder.h"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <memory>
 
 #if defined(__GNUC__)
@@ -23,14 +25,22 @@ namespace glint::scenes {
 namespace {
 
 constexpr int kChannels = 4;
+// Vulkan's maxImageDimension2D of today's GPUs. A small file can claim a picture of any size.
+constexpr int kMostPixels = 32768;  // in a row or a column
 
-// Returns the picture that `decode(&width, &height, &channels)` gives as pixels of type T, or why it gives
-// none.
-template <class T, class Decode>
-DecodedPicture decoded(std::vector<T> DecodedPicture::*pixels, Decode&& decode) {
+// Returns the picture of `file`, which `load(file..., &width, &height, &channels, kChannels)` gives as pixels
+// of type T, or why it gives none. `measure` has the same form and reads only the size.
+template <class T, class Measure, class Load, class... File>
+DecodedPicture decoded(std::vector<T> DecodedPicture::*pixels, Measure measure, Load load, File... file) {
   int width = 0, height = 0, channels = 0;
-  const std::unique_ptr<T, void (*)(void*)> data(decode(&width, &height, &channels), stbi_image_free);
   DecodedPicture out;
+  if (measure(file..., &width, &height, &channels) && std::max(width, height) > kMostPixels) {
+    out.error = fmt::format("it has {}x{} pixels, and at most {} in a row or column are read", width, height,
+                            kMostPixels);
+    return out;
+  }
+  const std::unique_ptr<T, void (*)(void*)> data(load(file..., &width, &height, &channels, kChannels),
+                                                 stbi_image_free);
   if (!data) {
     out.error = stbi_failure_reason() ? stbi_failure_reason() : "unknown kind";
     return out;
@@ -48,19 +58,16 @@ bool is_hdr_picture(const std::string& path) {
 
 DecodedPicture decode_picture_file(const std::string& path) {
   if (!is_hdr_picture(path)) return decode_picture_bytes_of_file(path);
-  return decoded(&DecodedPicture::floats,
-                 [&](int* w, int* h, int* n) { return stbi_loadf(path.c_str(), w, h, n, kChannels); });
+  return decoded(&DecodedPicture::floats, stbi_info, stbi_loadf, path.c_str());
 }
 
 DecodedPicture decode_picture_bytes_of_file(const std::string& path) {
-  return decoded(&DecodedPicture::bytes,
-                 [&](int* w, int* h, int* n) { return stbi_load(path.c_str(), w, h, n, kChannels); });
+  return decoded(&DecodedPicture::bytes, stbi_info, stbi_load, path.c_str());
 }
 
 DecodedPicture decode_picture(std::span<const uint8_t> file) {
-  return decoded(&DecodedPicture::bytes, [&](int* w, int* h, int* n) {
-    return stbi_load_from_memory(file.data(), int(file.size()), w, h, n, kChannels);
-  });
+  return decoded(&DecodedPicture::bytes, stbi_info_from_memory, stbi_load_from_memory, file.data(),
+                 int(file.size()));
 }
 
 }  // namespace glint::scenes

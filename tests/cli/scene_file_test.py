@@ -150,15 +150,54 @@ class SceneFiles(unittest.TestCase):
         self.assertTrue(all(0 < x < 31 and 0 < y < 31 for x, y in green))
 
     def test_mistakes_are_named_with_their_file(self):
-        self.refused(gltf([{"mesh": 7}]), "not there")
+        self.refused(gltf([{"mesh": 7}]), "it names mesh 7, and it has 2")
+        self.refused(gltf([{"mesh": 0}, {"camera": 3}]), "it names camera 3, and it has 1")
         self.refused(gltf([CAMERA]), "no triangles")
         self.refused(gltf([{"mesh": 0}], extensionsRequired=["KHR_draco_mesh_compression"]), "KHR_draco_mesh_compression")
-        self.refused(gltf([{"mesh": 0, "children": [0]}]), "loop")
+        self.refused(gltf([{"mesh": 0, "name": "leaf", "children": [0]}]), "node 0 ('leaf')", "stands below itself")
+        # Without the check, twenty such levels are a million instances.
+        doubled = [{"children": [i + 1, i + 1]} for i in range(40)] + [{"mesh": 0}]
+        self.refused(gltf(doubled), "node 40", "two parents")
+        self.refused(gltf([CAMERA, {"mesh": 0}, {"mesh": 0, "name": "flat", "scale": [1, 0, 1]}]), "node 2 ('flat')", "flattens its mesh")
+        self.refused(gltf([{"mesh": 0}]).replace(uri(b"")[:37] + uri(struct.pack("<f", -0.5))[37:42], uri(b"")[:37] + uri(b"\0\0\xc0\x7f")[37:42]),
+                     "in mesh 0", "a position is (nan, -0.5, 0)")
+        textured = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
+        self.refused(gltf([{"mesh": 0}], materials=textured, textures=[{"source": 0}], images=[{"uri": "wood.png"}]),
+                     "the picture of image 0 ('wood.png') cannot be read")
+        self.refused(gltf([{"mesh": 0}], materials=textured, textures=[{}], images=[]), "it names image -1, and it has 0")
         self.refused(gltf([{"mesh": 0}]).replace('"count": 4', '"count": 400'), "leaves its buffer")
         self.refused("{}", "cannot be read")
         done = self.glint("run", "missing.gltf")
         self.assertEqual(done.returncode, 2)
         self.assertIn("there is no such file", done.stderr)
+
+    def test_mistakes_in_an_obj_file_are_named_with_their_line(self):
+        corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"
+        for text, *parts in [
+                (corners + "f 1 2 900000000\n", "bad.obj:6", "names vertex 900000000, and the file has 3"),
+                (corners + "f 1 2 9\n", "bad.obj:6", "names vertex 9"),
+                (corners + "f 1 2 -4\n", "bad.obj:6", "names vertex -4, and 3 stand above it"),
+                ("v 0 0 0\nf 1 -2 1\nv 1 1 1\n", "bad.obj:2", "names vertex -2, and 1 stand above it"),
+                (corners + "f 1/1 2/2 3/1\n", "bad.obj:6", "names texture coordinate 2, and the file has 1"),
+                (corners + "f 1//1 2//1 3//7\n", "bad.obj:6", "names normal 7"),
+                (corners + "f 1 0 2\n", "bad.obj:6", "names vertex 0"),
+                (corners + "f 1 2 99999999999999999999\n", "bad.obj:6", "names vertex 99999999999999999999"),
+                (corners + "f 1 2 three\n", "bad.obj:6", "'three' is not the number of a vertex"),
+                (corners + "f" + " 1 2 3" * 86 + "\n", "bad.obj:6", "has 258 corners"),
+                ("v 0 nan 0\n" + corners + "f 1 2 3\n", "bad.obj:1", "'nan' is not a finite number"),
+                ("v 0 0 1e39\n" + corners + "f 1 2 3\n", "bad.obj:1", "'1e39' is not a finite number"),
+                ("v 0 0\n" + corners + "f 1 2 3\n", "bad.obj:1", "has 2 of 3 numbers")]:
+            with self.subTest(text=text[-40:]):
+                (self.folder / "bad.obj").write_text(text)
+                done = self.glint("run", "bad.obj", "--size", "4x4", "--spp", "1", "--out", "out")
+                self.assertEqual(done.returncode, 2, done.stderr)
+                for part in parts:
+                    self.assertIn(part, done.stderr)
+
+    def test_numbers_of_every_spelling_are_read(self):
+        spellings = "v +0 0.0e0 -0\r\nv 1e0 1e-400 0\r\n\tv\t0 1. .0\r\nvt .5\r\nf 1/1 2/1/ -1/-1\r\nf 1 2\r\n"
+        _, run = self.render("spellings.obj", spellings)
+        self.assertEqual(run["scene"]["triangles"], 1)
 
     def test_copies_of_an_obj_scene_share_what_they_have_and_look_the_same(self):
         (self.folder / "body.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
