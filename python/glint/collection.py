@@ -12,6 +12,7 @@ from typing import Any, Iterable, Iterator
 from .documents import read_json
 from .errors import GlintError, MissingFile, SchemaError, UnknownName
 from .derived import metrics
+from .file_list import ListedFiles
 from .optional import require
 from .patterns import near
 from .run_directory import Run
@@ -110,6 +111,9 @@ class Bench(Runs):
         path = self.directory / "metrics.csv"
         if not path.is_file():
             raise MissingFile(f"{self.directory}: there is no metrics.csv: this is no folder of `glint bench`, or the bench was stopped")
+        record = self.directory / "bench.json"
+        listed = read_json(record).get("files") if record.is_file() else None
+        ListedFiles(self.directory, "bench.json", listed, "remove metrics.csv and run the bench again with --resume").check("metrics.csv")
         return Table.read(path, needs=("workload", "config", "cycles"))
 
 

@@ -6,10 +6,12 @@ from __future__ import annotations
 import functools
 import pathlib
 import tomllib
+import warnings
 from typing import Any
 
 from .documents import flat, read_json, read_text
 from .errors import IncompleteRun, MissingFile, SchemaError, UnknownName
+from .file_list import ListedFiles
 from .images import read_image, read_map
 from .derived import Metrics
 from .patterns import near
@@ -39,6 +41,8 @@ class Run:
         MissingFile: There is no run.json (this is no run directory, or the run was killed) or no stats.json.
         IncompleteRun: The run ended with an error, which the message repeats.
         SchemaError: A file has another schema or is damaged.
+
+    Each file is compared with its length and sum in run.json when it is first asked for.
     """
 
     def __init__(self, directory: str | pathlib.Path, partial: bool = False):
@@ -51,6 +55,7 @@ class Run:
         tree = read_json(record)
         if tree.get("schema") != SCHEMA:
             raise SchemaError(f"{record}: the schema is {tree.get('schema')!r}, but this package reads {SCHEMA}: use the package of the Glint that wrote the run")
+        self._files = ListedFiles(self.directory, "run.json", tree.pop("files", None), "run it again")
         self.info = Facts(flat(tree))
         if not partial and self.info.get("exit", 0) != 0:
             raise IncompleteRun(f"{self.directory}: the run ended with exit code {self.info['exit']}: {self.info.get('message', '')}")
@@ -58,6 +63,8 @@ class Run:
             if "mode" not in self.info:
                 raise SchemaError(f"{record}: there is no 'mode': the file is damaged")
             self.file("stats.json", "every run that ends well")
+            if not self._files.is_known:
+                warnings.warn("an earlier version of Glint wrote the run without the lengths and sums of its files, so damage to them cannot be noticed", stacklevel=2)
 
     def __repr__(self) -> str:
         return f"Run('{self.directory}': {self.workload}, {self.info['mode']} on {self.config_name})"
@@ -177,11 +184,15 @@ class Run:
         """Returns a map of cost by pixel: an array of the shape (height, width)."""
         if name not in self.map_names:
             raise MissingFile(f"{self.directory}: there is no map '{name}'; the run has: {', '.join(self.map_names) or 'none (`glint run --heat` writes them)'}")
-        return read_map(self.directory / "heat" / f"{name}.npy")
+        return read_map(self.file(f"heat/{name}.npy"))
 
     def file(self, name: str, written_by: str = "the run") -> pathlib.Path:
-        """Returns the path of a file of the run. Raises MissingFile, which says what writes the file, when it is missing."""
+        """Returns the path of a file of the run.
+
+        Raises MissingFile, which says what writes the file, when it is missing, and SchemaError when it is not as the run left it.
+        """
         path = self.directory / name
         if not path.is_file():
             raise MissingFile(f"{self.directory}: there is no {name}, which is written by {written_by}")
+        self._files.check(name)
         return path

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/diagnostics.h"
 #include "report/picture/npy.h"
@@ -17,12 +15,6 @@ namespace glint::report {
 namespace {
 
 constexpr int kMapsSchema = 1;  // schema of maps.json
-
-std::string read_whole(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw UserError({path}, "cannot read the file", "the run's maps are incomplete; run it again");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 }  // namespace
 
@@ -72,17 +64,19 @@ std::vector<std::pair<std::string, std::string>> heat_files(const std::vector<Co
   return files;
 }
 
-std::vector<CostMap> read_heat(const std::string& directory) {
-  const std::string path = directory + "/heat/maps.json";
+std::vector<CostMap> read_heat(const ListedFiles& files) {
+  const std::string path = files.path_of("heat/maps.json");
   std::vector<CostMap> maps;
-  if (!std::filesystem::exists(path)) return maps;
-  const auto index = nlohmann::json::parse(read_whole(path), nullptr, false);
+  const std::optional<std::string> text = files.read("heat/maps.json");
+  if (!text) return maps;
+  const auto index = nlohmann::json::parse(*text, nullptr, false);
   if (!index.is_object() || index.value("schema", 0) != kMapsSchema || !index.contains("maps"))
     throw UserError({path}, "this is not a list of maps that this version knows", "run it again");
   for (const auto& entry : index["maps"]) {
+    if (!entry.is_object()) throw UserError({path}, "an element of 'maps' is no map", "run it again");
     CostMap map{entry.value("name", ""), entry.value("unit", ""), entry.value("doc", ""), true, 0, 0, {}};
-    const std::string file = directory + "/heat/" + entry.value("file", "");
-    read_npy(read_whole(file), file, map);
+    const std::string file = "heat/" + entry.value("file", "");
+    read_npy(files.need(file), files.path_of(file), map);
     maps.push_back(std::move(map));
   }
   return maps;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/cost_map.h"
+#include "report/files/file_list.h"
 
 namespace glint::report {
 
@@ -31,8 +32,8 @@ std::string heat_index(const std::vector<CostMap>& maps);
 // Returns name and bytes of every file of a run's maps, below "heat/".
 std::vector<std::pair<std::string, std::string>> heat_files(const std::vector<CostMap>& maps);
 
-// Reads what heat_files() wrote into a run directory. Returns none when there are no maps. Throws UserError
-// when a file is damaged.
-std::vector<CostMap> read_heat(const std::string& directory);
+// Reads what heat_files() wrote into the directory of a run. Returns none when there are no maps. Throws
+// UserError when a file is damaged.
+std::vector<CostMap> read_heat(const ListedFiles& files);
 
 }  // namespace glint::report

@@ -130,6 +130,7 @@ void RunDirectory::remove(const std::string& name) const {
   if (fs::is_directory(fs::symlink_status(path_of(name), error)))
     throw UserError({path_of(name)}, "a folder stands where a run has a file",
                     "move it away, or name another folder with --out");
+  written_.erase(name);
   fs::remove(path_of(name), error);
   if (error) throw UserError({path_of(name)}, "cannot remove what an earlier run left: " + error.message());
 }
@@ -141,6 +142,7 @@ void RunDirectory::write(const std::string& name, const std::string& bytes) cons
     if (error) throw UserError({path_of(name)}, "cannot create its folder: " + error.message());
   }
   write_file(path_of(name), bytes);
+  written_[name] = sum_of(bytes);
 }
 
 std::vector<std::string> RunDirectory::own_files() const {
@@ -215,6 +217,8 @@ void RunDirectory::write_run(const RunInfo& info) const {
                               {"launch_id", fault.launch_id},
                               {"count", fault.count}});
   if (!info.saved.empty()) json["saved"] = info.saved;
+  written_.erase("run.json");  // A file cannot hold its own sum.
+  json["files"] = json_of(written_);
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;

@@ -10,6 +10,7 @@
 
 #include "base/params.h"
 #include "base/stats.h"
+#include "report/files/file_list.h"
 #include "report/files/folder_lock.h"
 #include "report/picture/image_files.h"
 
@@ -66,8 +67,9 @@ struct RunInfo {
 void write_file(const std::string& path, const std::string& bytes);
 
 // Writes the files of a run through write_file(). A run.json that says that the run has not ended is written
-// first, and the real one last. A directory whose run.json has exit 0 is therefore complete. Throws UserError
-// when the folder or a file cannot be written.
+// first, and the real one last. A directory whose run.json has exit 0 is therefore complete. run.json lists
+// every file that this object has written, with what it held. Throws UserError when the folder or a file
+// cannot be written.
 class RunDirectory {
  public:
   explicit RunDirectory(std::string path);  // the folder is made with its parents
@@ -91,12 +93,14 @@ class RunDirectory {
   void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format
   void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml
   void write_run(const RunInfo& info) const;                                                // run.json
+  const FileList& written() const { return written_; }  // what this object has written and not removed
 
  private:
   std::vector<std::string> own_files() const;  // results that a run may have left beside the folder heat
 
   std::string path_;
   FolderLock lock_;
+  mutable FileList written_;  // It says what is in the folder, which const functions change, too.
 };
 
 }  // namespace glint::report

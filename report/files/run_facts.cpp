@@ -51,6 +51,7 @@ constexpr Fact kFacts[] = {{"/schema", "number"},
                            {"/on_fault", "string"},
                            {"/faults", "array"},
                            {"/saved", "array"},
+                           {"/files", "object"},
                            {"/exit", "number"},
                            {"/message", "string"}};
 
@@ -67,17 +68,17 @@ void check_types(const Json& facts, const std::string& path) {
 
 }  // namespace
 
-Json read_json_object(const std::string& path, const std::string& advice) {
-  const std::optional<std::string> text = read_regular_file(path);
-  if (!text) throw UserError({path}, "cannot read the file", advice);
-  Json json = Json::parse(*text, nullptr, false);
+Json json_object(const std::string& text, const std::string& path) {
+  Json json = Json::parse(text, nullptr, false);
   if (!json.is_object())
     throw UserError({path}, "this is not a JSON object", "the file is damaged; run it again");
   return json;
 }
 
 Json read_run_facts(const std::string& path) {
-  Json facts = read_json_object(path, "is this the directory of a finished run?");
+  const std::optional<std::string> text = read_regular_file(path);
+  if (!text) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
+  Json facts = json_object(*text, path);
   check_types(facts, path);
   return facts;
 }

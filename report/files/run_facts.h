@@ -6,9 +6,8 @@
 
 namespace glint::report {
 
-// Reads a file of a run that holds a JSON object. Throws UserError when the file cannot be read, with
-// `advice` as its note, or holds something else.
-nlohmann::ordered_json read_json_object(const std::string& path, const std::string& advice);
+// Returns the JSON object that a file of a run holds. Throws UserError when it holds something else.
+nlohmann::ordered_json json_object(const std::string& text, const std::string& path);
 
 // Reads run.json, whatever the run's end. Throws UserError when the file cannot be read, is not a JSON
 // object, or has a key whose value is of another type than write_run() writes.

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/diagnostics.h"
-#include "base/regular_file.h"
 #include "report/files/csv_field.h"
+#include "report/files/file_list.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
 #include "report/files/stat_rows.h"
@@ -23,12 +23,6 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
     text.remove_suffix(1);
   return text;
-}
-
-std::string whole_file(const std::string& path) {
-  std::optional<std::string> text = read_regular_file(path);
-  if (!text) throw UserError({path}, "cannot read the file", "is this the directory of a finished run?");
-  return std::move(*text);
 }
 
 void flatten(const nlohmann::json& json, const std::string& name, std::map<std::string, double>& numbers,
@@ -63,8 +57,9 @@ void check_finished(const std::string& directory) {
 RunRecord RunRecord::read(const std::string& directory) {
   RunRecord record;
   record.add_finished(directory);
-  record.add_stats(whole_file(directory + "/stats.csv"), directory + "/stats.csv");
-  record.add_config(whole_file(directory + "/config.toml"));
+  const ListedFiles files = ListedFiles::of_run(directory);
+  record.add_stats(files.need("stats.csv"), directory + "/stats.csv");
+  record.add_config(files.need("config.toml"));
   return record;
 }
 

@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "base/diagnostics.h"
-#include "base/regular_file.h"
 #include "report/files/base64.h"
 #include "report/files/config_rows.h"
+#include "report/files/file_list.h"
 #include "report/files/heat_files.h"
 #include "report/files/profile_files.h"
 #include "report/files/run_directory.h"
@@ -110,9 +110,9 @@ void add_config(const PageRun& run, const std::string& toml, Json& out, Json& do
         change.preset.empty() ? Json(nullptr) : number_or_text(change.preset);
 }
 
-void add_timeline(const PageRun& run, Json& out) {
+void add_timeline(const PageRun& run, const ListedFiles& files, Json& out) {
   const std::string path = run.directory + "/trace.json.gz";
-  if (std::filesystem::exists(path))
+  if (files.read("trace.json.gz"))
     out["timeline"] = page_timeline(read_timeline(path, run.timeline.value_or(TimelineRequest{})));
   else if (run.timeline)
     throw UserError({run.directory}, "the run has no trace, and so no timeline", "run it again with --trace");
@@ -121,26 +121,24 @@ void add_timeline(const PageRun& run, Json& out) {
 Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   const std::string& directory = run.directory;
   Json out = {{"directory", directory}, {"run", facts_of(directory)}};
-  out["stats"] = page_stats(
-      read_json_object(directory + "/stats.json", "the run has not finished; run it again"), stat_docs);
+  const ListedFiles files = ListedFiles::of_run(directory);
+  out["run"].erase("files");  // The page has their contents.
+  out["stats"] = page_stats(json_object(files.need("stats.json"), directory + "/stats.json"), stat_docs);
   if (!out["stats"].contains("gpu.cycles"))
     throw UserError({directory + "/stats.json"}, "the statistics have no gpu.cycles",
                     "another version of Glint wrote it: run it again with this one");
   out["metrics"] = metrics_json(RunRecord::read(directory));
-  // RunRecord has already read this file.
-  add_config(run, *read_regular_file(directory + "/config.toml"), out, key_docs);
-  if (const auto csv = read_regular_file(directory + "/series.csv"))
-    out["series"] = columns_of(*csv, directory + "/series.csv");
-  if (const auto csv = read_regular_file(directory + "/profile.csv")) {
+  add_config(run, files.need("config.toml"), out, key_docs);
+  if (const auto csv = files.read("series.csv")) out["series"] = columns_of(*csv, directory + "/series.csv");
+  if (const auto csv = files.read("profile.csv")) {
     const ProfileTable profile = parse_profile(*csv, directory + "/profile.csv");
     out["profile"] = page_profile(profile);
-    if (const auto source = read_regular_file(directory + "/source.json"))
+    if (const auto source = files.read("source.json"))
       out["source"] = page_source(profile, parse_source(*source, directory + "/source.json"));
   }
-  if (const std::vector<CostMap> maps = read_heat(directory); !maps.empty()) out["heat"] = page_heat(maps);
-  add_timeline(run, out);
-  if (const auto png = read_regular_file(directory + "/image.png"))
-    out["picture"] = "data:image/png;base64," + base64(*png);
+  if (const std::vector<CostMap> maps = read_heat(files); !maps.empty()) out["heat"] = page_heat(maps);
+  add_timeline(run, files, out);
+  if (const auto png = files.read("image.png")) out["picture"] = "data:image/png;base64," + base64(*png);
   return out;
 }
 

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import struct
+import warnings
 import zlib
 
 import python_case
@@ -33,15 +34,45 @@ def png(path, width, height, colour, rows):
 
 
 class Damaged(PythonTest):
-    def refused(self, file, change, read, words=None):
-        """Checks that reading a run whose file was changed raises a SchemaError with the file's name."""
+    def refused(self, file, change, read, words=None, listed=False):
+        """Checks that reading a run whose file was changed raises a SchemaError with the file's name. Without `listed`, only the file's form can tell."""
         there = self.folder / "damaged"
         shutil.rmtree(there, ignore_errors=True)
         shutil.copytree(self.ship.directory, there)
+        record = json.loads((there / "run.json").read_text())
+        if not listed:
+            del record["files"]
+            (there / "run.json").write_text(json.dumps(record))
         (there / file).parent.mkdir(exist_ok=True)
         (there / file).write_bytes(change((there / file).read_bytes() if (there / file).exists() else b""))
-        with self.subTest(file=file, words=words):
+        with self.subTest(file=file, words=words), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a run without a list
             self.assertRaisesRegex(self.glint.SchemaError, words or re.escape(file), lambda: read(self.glint.Run(there)))
+
+    def test_a_file_that_is_not_as_run_json_lists_it_is_refused(self):
+        cut = lambda data: data[:data.rindex(b"\n", 0, -1) + 1]
+        changed = lambda data: data.replace(b"1", b"2", 1)
+        for file, read in (("config.toml", lambda run: run.config), ("stats.json", lambda run: run.cycles), ("series.csv", lambda run: run.series),
+                           ("profile.csv", lambda run: run.profile), ("profile.folded", lambda run: run.folded)):
+            self.refused(file, cut, read, rf"{file}: the file has \d+ bytes, and run.json says \d+: it was cut short: run it again", listed=True)
+            self.refused(file, changed, read, rf"{file}: the contents .* it was changed: run it again", listed=True)
+            self.refused(file, lambda data: data + b"\n", read, rf"{file}: .* written to after the run", listed=True)
+
+    def test_a_list_of_files_that_is_none_is_refused(self):
+        for wrong in (7, [], {"stats.json": 7}, {"stats.json": {"bytes": 1}}):
+            self.refused("run.json", lambda data, wrong=wrong: json.dumps({**json.loads(data), "files": wrong}).encode(), lambda run: run, "'files' is no list", listed=True)
+
+    def test_a_run_of_an_earlier_version_is_read_with_a_warning(self):
+        there = self.folder / "early"
+        shutil.copytree(self.ship.directory, there)
+        record = json.loads((there / "run.json").read_text())
+        del record["files"]
+        (there / "run.json").write_text(json.dumps(record))
+        with self.assertWarnsRegex(UserWarning, "without the lengths and sums"):
+            self.assertEqual(self.glint.Run(there).cycles, self.ship.cycles)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(self.glint.Run(self.ship.directory).cycles, self.ship.cycles)
 
     def test_statistics_that_are_no_numbers_are_refused(self):
         for word in (b'"x"', b"null", b"true", b"NaN", b"Infinity", b"1e999"):

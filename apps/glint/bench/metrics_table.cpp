@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "apps/glint/bench/tables.h"
 #include "apps/glint/bench/workloads.h"
 #include "base/diagnostics.h"
 #include "base/regular_file.h"
@@ -42,6 +43,7 @@ MetricsTable::MetricsTable(const std::string& folder, const std::set<std::string
   const std::string path = folder + "/metrics.csv";
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) {
+    if (fs::exists(folder + "/" + kBenchRecord, error)) return;
     if (fs::is_directory(folder, error) && !report::is_unused_folder(folder) && !holds_only_folders(folder))
       throw UserError({folder}, "the folder holds files that are not of a bench", kAdvice);
     return;
@@ -49,7 +51,7 @@ MetricsTable::MetricsTable(const std::string& folder, const std::set<std::string
   const std::optional<std::string> text = read_regular_file(path);
   if (!text || !text->starts_with("workload,")) throw UserError({path}, "no bench wrote this file", kAdvice);
   is_new_ = false;
-  const report::CsvTable table = report::read_csv(*text, path);
+  const report::CsvTable table = report::read_csv(read_metrics(path), path);
   for (const std::vector<std::string>& cells : table.rows)
     if (!planned.contains(cells[0])) rows_[cells[0]] = line_of(cells);
   if (!rows_.empty() && line_of(table.columns) != report::metrics_header())

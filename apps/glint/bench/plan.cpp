@@ -17,6 +17,7 @@
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
+#include "report/files/run_record.h"
 
 namespace glint::app {
 namespace {
@@ -70,8 +71,12 @@ bool is_complete(const BenchTask& task, const std::string& key) {
   if (!mark.is_object() || !mark.contains("key") || mark["key"] != key) return false;
   for (const char* name : {"wall_seconds", "peak_bytes"})
     if (!mark.contains(name) || !mark[name].is_number()) return false;
-  return fs::exists(task.directory + "/stats.csv") && fs::exists(task.directory + "/run.json") &&
-         fs::exists(task.directory + "/config.toml");
+  try {
+    report::RunRecord::read(task.directory);
+    return true;
+  } catch (const UserError&) {  // A run that is damaged or gone is not complete.
+    return false;
+  }
 }
 
 std::vector<std::string> command_of(const Session& session, const BenchOptions& options,

@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
+#include "base/regular_file.h"
 #include "report/files/csv_table.h"
+#include "report/files/run_facts.h"
 
 namespace glint::app {
 
 namespace fs = std::filesystem;
+constexpr int kBenchSchema = 1;  // schema of kBenchRecord
 
 std::string metrics_file(const std::string& file_or_folder) {
   if (!fs::is_directory(file_or_folder)) return file_or_folder;
@@ -23,13 +28,34 @@ std::string metrics_file(const std::string& file_or_folder) {
   return path;
 }
 
+std::string bench_record(const report::FileList& written) {
+  return nlohmann::ordered_json{{"schema", kBenchSchema}, {"files", report::json_of(written)}}.dump(2) + "\n";
+}
+
+std::string read_metrics(const std::string& path) {
+  const fs::path table(path);
+  const std::string folder = table.has_parent_path() ? table.parent_path().string() : ".",
+                    record = folder + "/" + kBenchRecord;
+  std::optional<report::FileList> list;
+  if (const std::optional<std::string> text = read_regular_file(record)) {
+    const nlohmann::ordered_json json = report::json_object(*text, record);
+    if (json.contains("files")) list = report::file_list(json["files"], record);
+  }
+  const report::ListedFiles files(folder, kBenchRecord,
+                                  "remove metrics.csv and run the bench again with --resume, which keeps the "
+                                  "workloads that are complete",
+                                  std::move(list));
+  const std::optional<std::string> text = files.read(table.filename().string());
+  return text ? *text : read_file(path);  // read_file() says why it cannot be read, and reads pipes, too.
+}
+
 namespace {
 
 std::set<std::string> workloads_of(const fs::path& metrics) {
   std::set<std::string> out;
   if (!fs::exists(metrics)) return out;
   for (const std::vector<std::string>& row :
-       report::read_csv(read_file(metrics.string()), metrics.string()).rows)
+       report::read_csv(read_metrics(metrics.string()), metrics.string()).rows)
     out.insert(row.at(0));
   return out;
 }

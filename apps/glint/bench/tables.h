@@ -5,11 +5,21 @@
 #include <utility>
 #include <vector>
 
+#include "report/files/file_list.h"
+
 namespace glint::app {
 
 // Returns the path of a folder's metrics.csv; the name of a file is returned unchanged. Throws UserError when
 // the folder has no metrics.csv.
 std::string metrics_file(const std::string& file_or_folder);
+
+// This file of a bench folder lists the tables beside it, as run.json lists the files of a run.
+inline constexpr const char* kBenchRecord = "bench.json";
+std::string bench_record(const report::FileList& written);  // the text of that file
+
+// Returns the text of a table. Throws UserError when the file cannot be read, or a kBenchRecord beside it
+// says that the bench has written something else.
+std::string read_metrics(const std::string& path);
 
 // Returns the directories of the runs in a folder of `glint bench`, ordered by name. These are the runs of
 // its metrics.csv, which benches completed. Other runs in the folder (failed ones, or those of `glint run`)

@@ -9,8 +9,11 @@
 #include <iterator>
 #include <memory>
 
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
+#include "report/files/file_list.h"
 #include "report/files/profile_files.h"
+#include "report/files/run_facts.h"
 #include "report/files/run_record.h"
 #include "report/files/source_files.h"
 
@@ -22,8 +25,15 @@ struct AnnotateOptions {
   std::vector<std::string> measures = report::kUsualMeasures;
 };
 
-ProfileTable read_profile(const std::string& path) {
-  const std::optional<std::string> text = text_of_file(path);
+// Returns the files of a run directory, which must be as the run left them. Any folder may hold a profile.
+report::ListedFiles files_of_folder(const std::string& folder) {
+  if (report::is_run_folder(folder)) return report::ListedFiles::of_run(folder);
+  return {folder, "", "", std::nullopt};
+}
+
+ProfileTable read_profile(const report::ListedFiles& files, const std::string& name) {
+  const std::string path = files.path_of(name);
+  const std::optional<std::string> text = files.read(name);
   if (!text)
     throw UserError({}, fmt::format("cannot read '{}'", path),
                     "`glint run ... --profile` writes profile.csv into the run directory");
@@ -32,14 +42,17 @@ ProfileTable read_profile(const std::string& path) {
 
 // Returns source.json beside the profile. Without that file it reads the files as they are now, which is
 // enough for GLSL.
-report::SourceMap read_source(const std::string& path, const ProfileTable& profile, const std::string& view) {
-  if (const std::optional<std::string> text = text_of_file(path)) return report::parse_source(*text, path);
+report::SourceMap read_source(const report::ListedFiles& files, const ProfileTable& profile,
+                              const std::string& view) {
+  const std::string path = files.path_of("source.json");
+  if (const std::optional<std::string> text = files.read("source.json"))
+    return report::parse_source(*text, path);
   if (view != "glsl")
     throw UserError({}, fmt::format("cannot read '{}'", path),
                     "SPIR-V and ISA are in that file: name the run directory, not the profile alone");
-  ProgramListing files;
-  for (const report::FileShare& file : report::files_of(profile)) files.files.push_back(file.file);
-  report::SourceMap out = report::source_map({files}, text_of_file);
+  ProgramListing listing;
+  for (const report::FileShare& file : report::files_of(profile)) listing.files.push_back(file.file);
+  report::SourceMap out = report::source_map({listing}, text_of_file);
   out.programs.clear();
   return out;
 }
@@ -99,11 +112,12 @@ std::string programs_text(const AnnotateOptions& options, const ProfileTable& pr
 Exit annotate(const Session& session, const AnnotateOptions& options) {
   const bool is_directory = std::filesystem::is_directory(options.run);
   if (is_directory) report::check_finished(options.run);
-  const ProfileTable profile = read_profile(is_directory ? options.run + "/profile.csv" : options.run);
-  const std::string folder =
-      is_directory ? options.run : std::filesystem::path(options.run).parent_path().string();
-  const report::SourceMap map =
-      read_source((folder.empty() ? "." : folder) + "/source.json", profile, options.view);
+  const std::filesystem::path path = is_directory ? options.run + "/profile.csv" : options.run;
+  const report::ListedFiles files =
+      files_of_folder(path.has_parent_path() ? path.parent_path().string() : ".");
+  const ProfileTable profile = read_profile(files, path.filename().string());
+  const report::SourceMap map = read_source(files, profile, options.view);
+  if (is_directory) tell_of_files({options.run});
   const report::Annotator annotator(profile, map, options.measures, session.terminal);
   std::string out = options.view == "glsl" || options.view == "all"
                         ? files_text(options, profile, map, annotator)

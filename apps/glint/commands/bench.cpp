@@ -11,6 +11,7 @@
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/bench/metrics_table.h"
 #include "apps/glint/bench/plan.h"
+#include "apps/glint/bench/tables.h"
 #include "apps/glint/bench/view.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/frame_options.h"
@@ -173,6 +174,14 @@ class Bench {
 
   void write_metrics(const report::RunDirectory& directory) const {
     directory.write("metrics.csv", table_.text());
+    write_record(directory);
+  }
+
+  // Lists the tables, so that readers notice a damaged one.
+  void write_record(const report::RunDirectory& directory) const {
+    report::FileList list = directory.written();
+    list.erase(kBenchRecord);
+    directory.write(kBenchRecord, bench_record(list));
   }
 
   Exit conclude(const report::RunDirectory& directory, bool whole) const {
@@ -186,6 +195,7 @@ class Bench {
     }
     const std::string table = summary_table(rows());
     directory.write("summary.txt", table);
+    write_record(directory);
     print_output("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(),
                  directory.path_of("metrics.csv"));
     if (failed)

@@ -36,7 +36,7 @@ std::string range_text(const report::SpeedUps::Range& range) {
 // Prints how well a subset tells the speed-up of all workloads on another configuration.
 void print_speed_ups(const std::string& csv, const std::string& metrics, const std::string& other,
                      const report::Characterization& result) {
-  const std::string path = metrics_file(other), after = read_file(path);
+  const std::string path = metrics_file(other), after = read_metrics(path);
   const auto names = [&](const std::vector<int>& rows) {
     std::vector<std::string> out;
     for (const int row : rows) out.push_back(result.table.workloads[size_t(row)]);
@@ -54,7 +54,7 @@ void print_speed_ups(const std::string& csv, const std::string& metrics, const s
 }
 
 Exit characterize(const CharacterizeOptions& options) {
-  const std::string metrics = metrics_file(options.input), csv = read_file(metrics);
+  const std::string metrics = metrics_file(options.input), csv = read_metrics(metrics);
   report::CharacterizationOptions how{.linkage = report::linkage_of(options.linkage),
                                       .clusters = options.clusters,
                                       .search = options.search,

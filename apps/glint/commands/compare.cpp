@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <memory>
 
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 
 namespace glint::app {
@@ -17,6 +18,7 @@ Exit compare(const std::string& before, const std::string& after, const std::vec
   for (const std::string& text : fail_on) conditions.push_back(report::parse_condition(text));
   const report::RunRecord was = report::RunRecord::read(before), is = report::RunRecord::read(after);
   const std::vector<report::Change> changes = report::changes(was, is);
+  tell_of_files({before, after});
   write_output("", report::changes_text(changes, all) + report::uncompared_text(was, is));
   Exit exit = Exit::Ok;
   for (const report::Condition& condition : conditions) {

@@ -7,7 +7,9 @@
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
+#include "report/files/file_list.h"
 #include "report/files/run_record.h"
 #include "report/picture/flip.h"
 #include "report/picture/image_compare.h"
@@ -21,14 +23,19 @@ struct ImgdiffOptions {
   double min_psnr = 0, max_flip = 1, pixels_per_degree = report::kPixelsPerDegree;
 };
 
-// Returns the path of a picture. A run directory stands for its picture with all digits.
+constexpr const char* kPicture = "image.pfm";  // the picture of a run with all digits
+
+// Returns the path of a picture. A run directory stands for its picture, which must be as the run left it.
 std::string picture_of(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return path;
-  if (std::filesystem::exists(path + "/run.json", error) ||
-      !std::filesystem::exists(path + "/image.pfm", error))
-    report::check_finished(path);
-  return path + "/image.pfm";
+  const std::string picture = path + "/" + kPicture;
+  if (!std::filesystem::exists(path + "/run.json", error) && std::filesystem::exists(picture, error))
+    return picture;
+  report::check_finished(path);
+  report::ListedFiles::of_run(path).read(kPicture);
+  tell_of_files({path});
+  return picture;
 }
 
 std::string png_of(const report::Picture& picture) {

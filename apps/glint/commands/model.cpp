@@ -9,6 +9,7 @@
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/interval/interval_machine.h"
@@ -143,6 +144,9 @@ Exit model(const Session& session, const ModelOptions& options) {
     models.rows.push_back(row_of(session, options, workload, directory));
     progress.update(models.rows.size(), runs.size());
   }
+  std::vector<std::string> directories;
+  for (const auto& [workload, directory] : runs) directories.push_back(directory);
+  tell_of_files(directories);
   std::string out = options.out;
   if (out.empty()) out = options.runs.size() == 1 ? options.runs[0] + "/models.csv" : "models.csv";
   write_output(out, report::model_csv(models));

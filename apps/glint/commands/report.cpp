@@ -11,6 +11,7 @@
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/options/report_inputs.h"
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "report/files/config_file.h"
 #include "report/files/run_facts.h"
@@ -58,6 +59,7 @@ Exit write_report(const Session& session, const std::vector<std::string>& named,
   }
   nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
   add_suites(inputs, data);
+  tell_of_files(inputs.runs);
   const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
   const std::string page = report::page(data, {.frame = web("report.html"),
                                                .style = web("report.css"),

@@ -1,10 +1,11 @@
 // Declares `glint stats RUN`, which prints the statistics of a finished run again, in any format.
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
+#include "report/files/file_list.h"
 #include "report/files/run_record.h"
 #include "report/metrics/metrics.h"
 #include "report/metrics/vulkan_sim.h"
@@ -19,11 +20,9 @@ Exit stats(const std::string& run, const std::string& format) {
     write_output("", report::vulkan_sim_text(report::RunRecord::read(run)));
   } else {
     report::check_finished(run);
-    const std::string path = run + "/stats." + format;
-    if (!std::filesystem::exists(path))
-      throw UserError({path}, "there is no such file", "is this the directory of a finished run?");
-    write_output("", read_file(path));
+    write_output("", report::ListedFiles::of_run(run).need("stats." + format));
   }
+  tell_of_files({run});
   return Exit::Ok;
 }
 
