@@ -56,6 +56,14 @@ class Usage(GlintTest):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertGreaterEqual(len(done.stdout.splitlines()), 2)
 
+    def test_list_ops_names_the_test_of_each_op(self):
+        ops = [line.split()[0] for line in self.glint("list", "ops").stdout.splitlines()]
+        tests = {line.split()[0]: line.split()[1:] for line in self.glint("list", "ops", "--tests").stdout.splitlines()}
+        self.assertTrue(list(tests) == ops)
+        self.assertEqual(tests["st.shared.v2.b64"], ["tests/ops/access.cpp"])
+        self.assertEqual(tests["add.s32"], ["tests/isa/rows_test.cpp", "3", "examples"])
+        self.expect(2, ["--tests goes with ops", "scenes"], "list", "scenes", "--tests")
+
     def test_isa_explains_an_op_and_refuses_an_unknown_one(self):
         done = self.glint("isa", "fma.rn.f32")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -9,6 +9,7 @@
 #include "apps/glint/session.h"
 #include "base/registry.h"
 #include "isa/op_row.h"
+#include "isa/op_tests.h"
 #include "report/metrics/metrics.h"
 #include "report/metrics/vulkan_sim.h"
 #include "report/terminal/table.h"
@@ -79,7 +80,21 @@ Rows op_rows() {
   return rows;
 }
 
-Exit list(const Session& session, const std::string& what, bool markdown) {
+// Returns each op with the file of the test that checks what it does, and the number of its examples.
+Rows test_rows() {
+  Rows rows;
+  for (const isa::OpRow& row : isa::op_table()) {
+    const std::string_view test = isa::test_of(row);
+    rows.push_back({std::string(row.name), test.empty() ? "none" : std::string(test),
+                    row.examples.count ? fmt::format("{} examples", row.examples.count) : ""});
+  }
+  return rows;
+}
+
+Exit list(const Session& session, const std::string& what, bool markdown, bool tests) {
+  if (tests && what != "ops")
+    throw UserError({}, fmt::format("--tests goes with ops, and not with {}", what),
+                    "`glint list ops --tests` prints the test of each op");
   if (what == "stats") {
     write_output("", markdown ? stat_list_markdown() : stat_list());
     return Exit::Ok;
@@ -92,7 +107,7 @@ Exit list(const Session& session, const std::string& what, bool markdown) {
                     : what == "shaders"   ? shader_rows()
                     : what == "workloads" ? workload_rows()
                     : what == "configs"   ? config_rows(session.resources)
-                    : what == "ops"       ? op_rows()
+                    : what == "ops"       ? (tests ? test_rows() : op_rows())
                     : what == "metrics"   ? metric_rows()
                                           : policy_rows();
   write_output("", report::table(rows, ""));
@@ -104,7 +119,7 @@ Exit list(const Session& session, const std::string& what, bool markdown) {
 void add_list(Command app, Session& session) {
   struct Options {
     std::string what;
-    bool markdown = false;
+    bool markdown = false, tests = false;
   };
   auto options = std::make_shared<Options>();
   Command command =
@@ -114,8 +129,11 @@ void add_list(Command app, Session& session) {
       .one_of({"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"});
   command.add_flag("--markdown", options->markdown,
                    "Print stats or metrics as docs/stats.md and docs/metrics.md have them");
+  command.add_flag("--tests", options->tests, "Print the test that checks what each op does (with ops)");
   command.callback([&session, options] {
-    session.action = [&session, options] { return list(session, options->what, options->markdown); };
+    session.action = [&session, options] {
+      return list(session, options->what, options->markdown, options->tests);
+    };
   });
 }
 

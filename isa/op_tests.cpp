@@ -1,0 +1,68 @@
+// Maps effects to the oracles that check them.
+// SPDX-License-Identifier: Apache-2.0
+#include "isa/op_tests.h"
+
+#include <iterator>
+
+namespace glint::isa {
+namespace {
+
+struct EffectTest {
+  Effect effect;
+  std::string_view file;
+};
+constexpr EffectTest kTests[] = {
+    {Effect::None, "tests/isa/rows_test.cpp"},
+    {Effect::Load, "tests/ops/access.cpp"},
+    {Effect::Store, "tests/ops/access.cpp"},
+    {Effect::Atomic, "tests/ops/atomic.cpp"},
+    {Effect::Texture, ""},
+    {Effect::SurfaceLoad, ""},
+    {Effect::SurfaceStore, ""},
+    {Effect::SurfaceAtomic, ""},
+    {Effect::ImageQuery, ""},
+    {Effect::Branch, "tests/ops/control.cpp"},
+    {Effect::BranchIndexed, "tests/ops/control.cpp"},
+    {Effect::Call, "tests/ops/control.cpp"},
+    {Effect::PushReconvergence, "tests/ops/control.cpp"},
+    {Effect::Join, "tests/ops/control.cpp"},
+    {Effect::Exit, "tests/ops/control.cpp"},
+    {Effect::Return, "tests/ops/control.cpp"},
+    {Effect::Trap, "tests/ops/control.cpp"},
+    {Effect::CallCandidate, ""},
+    {Effect::CallAnyHit, ""},
+    {Effect::CallHit, ""},
+    {Effect::CallCallable, ""},
+    {Effect::Trace, ""},
+    {Effect::Resume, ""},
+    {Effect::Report, ""},
+    {Effect::Accepted, ""},
+    {Effect::Ignore, ""},
+    {Effect::Terminate, ""},
+    {Effect::EndTrace, ""},
+    {Effect::Query, ""},
+    {Effect::QueryProceed, ""},
+    {Effect::HitObject, ""},
+    {Effect::Barrier, "tests/ops/control.cpp"},
+    {Effect::Print, "tests/ops/control.cpp"},
+    {Effect::PrintPart, "tests/ops/control.cpp"},
+    {Effect::Fence, "tests/ops/control.cpp"},
+};
+static_assert(std::size(kTests) == size_t(Effect::Count));
+static_assert(
+    [] {
+      for (size_t i = 0; i < std::size(kTests); ++i)
+        if (kTests[i].effect != Effect(i)) return false;
+      return true;
+    }(),
+    "the rows have the order of the enum");
+
+}  // namespace
+
+std::string_view test_of(const OpRow& row) {
+  // A value op without a source has no example: what activemask gives is a matter of control flow.
+  if (row.effect == Effect::None && row.examples.count == 0) return "tests/ops/control.cpp";
+  return kTests[size_t(row.effect)].file;
+}
+
+}  // namespace glint::isa

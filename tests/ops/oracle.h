@@ -1,0 +1,31 @@
+// Lists the oracles of ops with effects. An oracle knows what an op does from the words of its name alone,
+// and shares no code with the executor.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "isa/op_row.h"
+
+namespace glint::test {
+
+// Runs the op of a row on both machines and compares all that it does. Returns the number of lanes that
+// executed it, as the machine says.
+using Oracle = uint64_t (*)(const isa::OpRow& row);
+
+uint64_t check_access(const isa::OpRow& row);
+uint64_t check_atomic(const isa::OpRow& row);
+uint64_t check_control(const isa::OpRow& row);
+
+// Names an oracle by its file, which is what the op table's families name.
+struct OracleFile {
+  std::string_view file;
+  Oracle check;
+};
+inline constexpr OracleFile kOracles[] = {
+    {"tests/ops/access.cpp", &check_access},
+    {"tests/ops/atomic.cpp", &check_atomic},
+    {"tests/ops/control.cpp", &check_control},
+};
+
+}  // namespace glint::test
