@@ -46,6 +46,11 @@ const char* type_name(const toml::node& node) {
   return "a date";
 }
 
+// Says whether a value that cannot be parsed was meant as a number, such as one of 20 digits.
+bool is_number_like(const std::string& value) {
+  return !value.empty() && value.find_first_not_of("+-_.0123456789") == std::string::npos;
+}
+
 SourceLocation location(const toml::table& table, std::string_view key) {
   const auto it = table.find(key);
   return it == table.end() ? SourceLocation{} : location(it->first);
@@ -106,7 +111,8 @@ void Config::add_setting(const std::string& key_value) {
   const toml::table table = [&] {
     try {
       return toml::parse(key + " = " + value, name);
-    } catch (const toml::parse_error&) {
+    } catch (const toml::parse_error& error) {
+      if (is_number_like(value)) throw UserError({name}, std::string(error.description()));
       return parse(key + " = \"" + value + "\"", name);  // a bare word is a string
     }
   }();

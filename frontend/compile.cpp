@@ -39,7 +39,9 @@ std::optional<CompiledModule> find_program(ShaderCache& cache, const std::string
 }  // namespace
 
 std::optional<isa::Stage> stage_of_file(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
+  // "main.rgen.glsl" is a common form, too.
+  const std::filesystem::path name(path);
+  const std::string ending = (name.extension() == ".glsl" ? name.stem() : name).extension().string();
   if (ending == ".rgen") return isa::Stage::RayGeneration;
   if (ending == ".rint") return isa::Stage::Intersection;
   if (ending == ".rahit") return isa::Stage::AnyHit;

@@ -34,8 +34,8 @@ struct BackendOptions {
   uint32_t guard_latency = 0;
 };
 
-// Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp. Returns
-// nothing when the ending is unknown.
+// Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp, each also
+// with .glsl after it. Returns nothing when the ending is unknown.
 std::optional<isa::Stage> stage_of_file(const std::string& path);
 
 // Runs glslang in process. Returns validated SPIR-V 1.6 words with OpLine debug information. Throws UserError

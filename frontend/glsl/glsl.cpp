@@ -1,17 +1,16 @@
 // Compiles GLSL to SPIR-V 1.6 through glslang in process: includes, defines, debug lines, and messages with
 // file and line.
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
 #include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
-#include <sstream>
 
 #include "base/regular_file.h"
 #include "frontend/cache.h"
 #include "frontend/compile.h"
 #include "frontend/glsl/includer.h"
+#include "frontend/glsl/messages.h"
 #include "frontend/glsl/newer_glsl.h"
 #include "frontend/program_bytes.h"
 #include "frontend/spirv/known_positions.h"
@@ -89,56 +88,6 @@ EShLanguage language_of(isa::Stage stage) {
   return EShLangCompute;
 }
 
-constexpr int kLinesBeforeDefines = 1;  // lines of the preamble before the first define
-
-// Returns the place of a message in terms of the user's files. glslang calls the text of preamble() "-1", and
-// gives no place for errors of linking.
-std::string place_in_files(const std::string& place, const std::string& path, const GlslOptions& options) {
-  if (place.rfind("Linking ", 0) == 0) return path;
-  if (place.rfind("-1:", 0) != 0) return place;
-  const int define = std::atoi(place.c_str() + 3) - 1 - kLinesBeforeDefines;
-  if (define < 0 || define >= int(options.defines.size())) return path;
-  const auto& [name, value] = options.defines[size_t(define)];
-  return fmt::format("{}: -D {}={}", path, name, value);
-}
-
-// Rewrites glslang's messages from "ERROR: file:line: 'token' : text" to "file:line: error: 'token' : text".
-// Lines that only count the errors are left out.
-std::string in_our_form(const std::string& log, const std::string& path, const GlslOptions& options) {
-  std::istringstream lines(log);
-  std::string result;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || line.find("compilation errors.") != std::string::npos ||
-        line.find("compilation terminated") != std::string::npos)
-      continue;
-    const bool is_error = line.rfind("ERROR: ", 0) == 0;
-    const bool is_warning = line.rfind("WARNING: ", 0) == 0;
-    if (is_error || is_warning) {
-      const std::string text = line.substr(is_error ? 7 : 9);
-      const size_t end_of_place = text.find(": ");
-      const std::string severity = is_error ? "error: " : "warning: ";
-      line = end_of_place == std::string::npos ? severity + text
-                                               : place_in_files(text.substr(0, end_of_place), path, options) +
-                                                     ": " + severity + text.substr(end_of_place + 2);
-    }
-    if (!result.empty()) result += '\n';
-    result += line;
-  }
-  return result;
-}
-
-// Returns the user's form of glslang's messages on a shader and its includes. Messages after an include that
-// failed are left out, because they come only from its absence.
-std::string with_includes(std::string log, const Includer& includer, const std::string& path,
-                          const GlslOptions& options) {
-  const std::string& failure = includer.failure();
-  const size_t at = failure.empty() ? std::string::npos : log.find(failure);
-  if (at != std::string::npos) log.resize(at + failure.size());
-  std::string message = in_our_form(log, path, options);
-  if (failure.empty() && !includer.cycle().empty()) message += "\nnote: " + includer.cycle();
-  return message;
-}
-
 std::string preamble(const GlslOptions& options) {
   std::string text = "#extension GL_GOOGLE_include_directive : require\n";
   for (const auto& [name, value] : options.defines) text += fmt::format("#define {} {}\n", name, value);
@@ -151,7 +100,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
                                const std::string& path, const GlslOptions& glsl) {
   glslang::TProgram program;
   program.addShader(&shader);
-  if (!program.link(messages)) throw UserError(in_our_form(program.getInfoLog(), path, glsl));
+  if (!program.link(messages)) throw_messages(program.getInfoLog(), {path, {}, glsl}, nullptr);
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
   options.disableOptimizer = true;
@@ -171,8 +120,9 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
 std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& options) {
   const std::optional<isa::Stage> stage = stage_of_file(path);
   if (!stage)
-    throw UserError({path, 0, 0}, "unknown shader stage",
-                    "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp");
+    throw UserError(
+        {path, 0, 0}, "unknown shader stage",
+        "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp, or add .glsl to that");
   const std::optional<std::string> source = read_regular_file(path);
   if (!source) throw UserError({path, 0, 0}, "cannot read the shader");
   return glsl_text_to_spirv(*source, path, *stage, options);
@@ -184,6 +134,7 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   if (options.cache)
     if (std::optional<std::vector<uint32_t>> found = find_words(*options.cache, key))
       return std::move(*found);
+  refuse_old_version({path, source, options});
   static const Process process;  // thread-safe since C++11
   const EShLanguage language = language_of(stage);
   glslang::TShader shader(language);
@@ -204,7 +155,7 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules | EShMsgDebugInfo | EShMsgEnhanced);
   Includer includer(options.include_dirs, stage, path);
   if (!shader.parse(GetDefaultResources(), kDefaultGlslVersion, ENoProfile, false, false, messages, includer))
-    throw UserError(with_includes(shader.getInfoLog(), includer, path, options));
+    throw_messages(shader.getInfoLog(), {path, source, options}, &includer);
   std::vector<uint32_t> words = generate(shader, language, messages, path, options);
   if (options.cache) store(*options.cache, key, includer.lookups(), words);
   return words;

@@ -15,6 +15,7 @@
 
 #include "frontend/compile.h"
 #include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/newer_capabilities.h"
 #include "frontend/spirv/words.h"
 
 namespace glint::frontend {
@@ -127,24 +128,6 @@ std::string validate_spirv(const std::vector<uint32_t>& words) {
   return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
 }
 
-void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name) {
-  std::string unknown, extensions;
-  for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
-    const auto op = spv::Op(words[at] & 0xffff);
-    if (op == spv::Op::OpFunction) break;
-    if (op == spv::Op::OpExtension)
-      extensions += fmt::format(" {}", reinterpret_cast<const char*>(&words[at + 1]));
-    if (op != spv::Op::OpCapability || at + 1 == words.size()) continue;
-    if (const std::string number = fmt::format("{}", words[at + 1]);
-        name_of_capability(words[at + 1]) == number)
-      unknown +=
-          fmt::format("\n  {}: capability {}, which the installed SPIRV-Tools do not know", name, number);
-  }
-  if (!unknown.empty())
-    throw UnsupportedError(
-        fmt::format("{}: not supported:{}\n  extensions of the module:{}", name, unknown, extensions));
-}
-
 bool is_spirv_file(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   return ending == ".spv" || ending == ".spvasm";
@@ -231,6 +214,11 @@ std::string word_after(const std::string& text, std::string_view start, uint32_t
   return text.substr(begin, text.find_first_of(" \n", begin) - begin);
 }
 
+// Returns the name of a capability as SPIRV-Tools print it, or its number when they do not know it.
+std::string word_of_capability(uint32_t capability) {
+  return word_after(text_of(spv::Op::OpCapability, {capability}), "OpCapability ", capability);
+}
+
 // Replaces the vendor's suffix, because older SPIRV-Tools print the names of the vendor's extension from
 // which the ray-tracing extension grew.
 std::string with_khr(std::string name) {
@@ -241,7 +229,25 @@ std::string with_khr(std::string name) {
 }  // namespace
 
 std::string name_of_capability(uint32_t capability) {
-  return word_after(text_of(spv::Op::OpCapability, {capability}), "OpCapability ", capability);
+  const std::string_view newer = newer_capability(capability);
+  return newer.empty() ? word_of_capability(capability) : std::string(newer);
+}
+
+void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name) {
+  std::string unknown, extensions;
+  for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16) {
+    const auto op = spv::Op(words[at] & 0xffff);
+    if (op == spv::Op::OpFunction) break;
+    if (op == spv::Op::OpExtension)
+      extensions += fmt::format(" {}", reinterpret_cast<const char*>(&words[at + 1]));
+    if (op != spv::Op::OpCapability || at + 1 == words.size()) continue;
+    if (word_of_capability(words[at + 1]) == fmt::format("{}", words[at + 1]))
+      unknown += fmt::format("\n  {}: capability {}, which the installed SPIRV-Tools do not know", name,
+                             name_of_capability(words[at + 1]));
+  }
+  if (!unknown.empty())
+    throw UnsupportedError(
+        fmt::format("{}: not supported:{}\n  extensions of the module:{}", name, unknown, extensions));
 }
 
 std::string name_of_storage_class(uint32_t storage) {

@@ -356,9 +356,11 @@ std::string default_description(const std::vector<std::string>& shaders, const s
 
 std::vector<std::string> with_companions(const std::string& shader) {
   std::vector<std::string> out{shader};
-  if (fs::path(shader).extension() != ".rgen") return out;
+  if (frontend::stage_of_file(shader) != isa::Stage::RayGeneration) return out;
+  const bool is_glsl = fs::path(shader).extension() == ".glsl";
+  const fs::path rgen = is_glsl ? fs::path(shader).replace_extension() : fs::path(shader);
   for (const char* ending : {".rmiss", ".rchit", ".rahit", ".rint", ".rcall"}) {
-    const fs::path beside = fs::path(shader).replace_extension(ending);
+    const fs::path beside = fs::path(rgen).replace_extension(std::string(ending) + (is_glsl ? ".glsl" : ""));
     std::error_code failed;
     if (fs::is_regular_file(beside, failed)) out.push_back(beside.string());
   }

@@ -13,6 +13,10 @@ if(TARGET glint)
     add_test(NAME cli_whole_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/whole_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  foreach(suite CommandLines Shaders)
+    add_test(NAME cli_${suite}
+      COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/messages_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
   add_test(NAME cli_outputs COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/outputs_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
   foreach(suite Usage Compile Configuration Faults RunDirectory Docs)
     add_test(NAME cli_${suite}

@@ -3,6 +3,8 @@
 #include "apps/glint/options/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
 #include <sstream>
@@ -16,7 +18,12 @@ Option Option::required() {
 }
 
 Option Option::positive() {
-  option_->check(CLI::PositiveNumber);
+  const auto check = [](const std::string& text) {
+    double value = 0;
+    const bool is_positive = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
+    return is_positive ? std::string{} : fmt::format("'{}' is not a number above 0", text);
+  };
+  option_->check(CLI::Validator(check, "POSITIVE", "positive"));
   return *this;
 }
 
@@ -27,7 +34,14 @@ Option Option::one_of(const std::vector<std::string>& words) {
 
 template <class T>
 Option Option::in_range(T least, T most) {
-  option_->check(CLI::Range(least, most));
+  const auto check = [=](const std::string& text) {
+    T value = 0;
+    const bool is_inside = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+    return is_inside ? std::string{}
+                     : fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  option_->check(CLI::Validator(
+      check, fmt::format("{} in [{} - {}]", CLI::detail::type_name<T>(), least, most), "in_range"));
   return *this;
 }
 template Option Option::in_range(int, int);
@@ -92,7 +106,13 @@ Command Command::add_subcommand(const std::string& name, const std::string& doc)
 
 template <class T>
 Option Command::add_option(const std::string& names, T& variable, const std::string& doc) {
-  return Option(app_->add_option(names, variable, doc));
+  CLI::Option* option = app_->add_option(names, variable, doc);
+  // A script whose variable is unset gives an empty text, which would count as if the option were not there.
+  const auto check = [](const std::string& text) {
+    return text.empty() ? "its value is empty" : std::string{};
+  };
+  option->check(CLI::Validator(check, "", "not_empty"));
+  return Option(option);
 }
 template Option Command::add_option(const std::string&, std::string&, const std::string&);
 template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
@@ -160,10 +180,30 @@ CommandLine::~CommandLine() {
   delete app_;
 }
 
+namespace {
+
+// Turns "help", "help COMMAND" and "version", which other tools know as commands, into options.
+std::vector<std::string> in_option_form(std::vector<std::string> words) {
+  const std::string first = words.empty() ? "" : words[0];
+  if (first == "version") words[0] = "--version";
+  if (first == "help") {
+    words.erase(words.begin());
+    words.push_back("--help");
+  }
+  return words;
+}
+
+}  // namespace
+
 ParseOutcome CommandLine::parse(int argc, char** argv) {
   try {
-    app_->parse(argc, argv);
+    std::vector<std::string> words = in_option_form({argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // CLI11 takes the last word first.
+    app_->parse(std::move(words));
   } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = app_->remaining();
+    if (app_->get_subcommands().empty() && !unknown.empty() && !unknown[0].starts_with('-'))
+      return {false, fmt::format("there is no command '{}'", unknown[0]), {}};
     if (error.get_exit_code() != 0) return {false, error.what(), {}};
     std::ostringstream out;
     app_->exit(error, out, out);

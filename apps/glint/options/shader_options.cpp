@@ -3,10 +3,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/shader_options.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+
+#include "base/diagnostics.h"
 
 namespace glint::app {
 namespace {
@@ -25,6 +29,18 @@ std::string cache_folder(const std::string& kind) {
     return folder + "/glint/" + kind;
   if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/glint/" + kind;
   return {};  // The cache is only in memory.
+}
+
+// Checks the name of a macro, so that glslang does not blame a line that the user never wrote.
+void check_macro(const std::string& name) {
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; };
+  const auto is_part = [&](char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)); };
+  // A macro with parameters is "name(a,b)"; glslang checks the parameters.
+  const std::string identifier = name.substr(0, name.find('('));
+  if (identifier.empty() || !is_letter(identifier[0]) ||
+      !std::all_of(identifier.begin(), identifier.end(), is_part))
+    throw UserError({}, fmt::format("--define has no macro's name in '{}'", name),
+                    "expected -D NAME or -D NAME=VALUE");
 }
 
 // Returns an identifier that changes with the executable, because another one may compile differently.
@@ -63,6 +79,7 @@ frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::Shade
   for (const std::string& define : options.defines) {
     const size_t equals = define.find('=');
     const bool has_value = equals != std::string::npos;
+    check_macro(define.substr(0, equals));
     glsl.defines.emplace_back(define.substr(0, equals), has_value ? define.substr(equals + 1) : "1");
   }
   return glsl;

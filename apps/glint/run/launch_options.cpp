@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/launch_options.h"
 
+#include <cstdint>
+
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
 
 namespace glint::app {
 namespace {
+
+constexpr uint64_t kMostCount = 1'000'000'000'000'000'000;  // more than any run reaches
 
 void add_machine_options(Command command, LaunchOptions& options) {
   command.add_option("--config", options.config, "Preset or TOML file to read").capture_default_str();
@@ -22,7 +26,7 @@ void add_machine_options(Command command, LaunchOptions& options) {
   command
       .add_option("--max-instructions", options.max_instructions,
                   "Number of instructions after which a warp is taken to be endless")
-      .positive();
+      .in_range(uint64_t{1}, kMostCount);
   command
       .add_option("--on-fault", options.on_fault_name,
                   "Selects what a fault does: stop ends the run at the first fault; with warn, wrong loads "
@@ -52,6 +56,7 @@ void add_launch_options(Command command, LaunchOptions& options) {
   command
       .add_option("--printf-limit", options.print_limit,
                   "Number of debugPrintfEXT messages to show, the first by launch id")
+      .in_range(uint64_t{0}, kMostCount)
       .capture_default_str();
   add_observe_options(command, options.observe);
   add_shader_options(command, options.shaders);

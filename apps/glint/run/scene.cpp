@@ -3,8 +3,10 @@
 #include "apps/glint/run/scene.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <system_error>
 
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/bench/workloads.h"
@@ -15,6 +17,7 @@
 #include "pipeline/structure_cache.h"
 #include "report/files/run_directory.h"
 #include "report/terminal/progress.h"
+#include "scenes/import/scene_file.h"
 
 namespace glint::app {
 namespace {
@@ -28,6 +31,21 @@ void take_workload_name(SceneOptions& options) {
                                     named->scene, named->shader, options.shader));
   options.scene = named->scene;
   options.shader = named->shader;
+}
+
+// Names of scenes have no dots and slashes, so what has one is a file of a kind that Glint does not know.
+void refuse_file(const std::string& what) {
+  if (what.find_first_of("./") == std::string::npos || scenes::names_scene_file(what)) return;
+  std::error_code failed;
+  const bool is_folder = std::filesystem::is_directory(what, failed);
+  const std::string ending = std::filesystem::path(what).extension().string();
+  throw UserError(
+      {what},
+      is_folder        ? "this is a folder, and Glint runs files"
+      : ending.empty() ? "this file has no ending that says what it is"
+                       : fmt::format("Glint does not run files that end in {}", ending),
+      "it runs scenes (.obj, .gltf, .glb), shaders (.rgen, .comp, .spv, .spvasm), pipelines (.toml), "
+      "kernels (.ptx), Amber scripts (.amber) and the scenes of 'glint list scenes'");
 }
 
 pipeline::RenderJob make_job(const Session& session, const SceneOptions& options,
@@ -100,6 +118,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
 }  // namespace
 
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
+  refuse_file(options.scene);
   take_workload_name(options);
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
   const std::unique_ptr<pipeline::StructureCache> structures =
