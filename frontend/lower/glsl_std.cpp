@@ -1,4 +1,5 @@
-// Lowers GLSL.std.450: each function becomes the sequence of ISA ops that computes it, in IEEE order.
+// Lowers GLSL.std.450: each function becomes the sequence of ISA ops that computes it. Sums of products are
+// chains of fma, as GPUs compute them.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <fmt/format.h>
@@ -41,9 +42,11 @@ Operand clamp_s32(Arithmetic& a, const Scalars& x, std::string_view) {
 Operand clamp_u32(Arithmetic& a, const Scalars& x, std::string_view) {
   return a.op("min.u32", {a.op("max.u32", {x[0], x[1]}), x[2]});
 }
-// Returns x (1 - a) + y a. The second product is not rounded, as in hardware, because the sum may cancel.
+// Returns x + a (y - x), rounded twice, which gives a driver's bits (tests/shaders). Choice: Vulkan defines
+// x (1 - a) + y a, and its conformance tests take both. Of the forms with two or three ops, this one has the
+// smallest error where the sum cancels, but mix(x, y, 1) is y only where y - x is exact.
 Operand mix(Arithmetic& a, const Scalars& x, std::string_view) {
-  return a.fma(x[1], x[2], a.mul(x[0], a.sub(a.constant(1), x[2])));
+  return a.fma(x[2], a.sub(x[1], x[0]), x[0]);
 }
 Operand inverse_sqrt(Arithmetic& a, const Scalars& x, std::string_view) {
   if (!a.is_double()) return a.op("rsqrt.f32", x);
@@ -165,28 +168,30 @@ Operands normalize(Arithmetic& a, const Arguments& x) {
   for (const Operand& part : x[0]) result.push_back(a.div(part, norm));
   return result;
 }
+// Rounds only the second product of each difference. So a vector's product with itself is not always 0.
 Operands cross(Arithmetic& a, const Arguments& x) {
-  const auto term = [&](int i, int j) { return a.sub(a.mul(x[0][i], x[1][j]), a.mul(x[1][i], x[0][j])); };
+  const auto term = [&](int i, int j) {
+    return a.fma(x[0][i], x[1][j], a.negative(a.mul(x[1][i], x[0][j])));
+  };
   return {term(1, 2), term(2, 0), term(0, 1)};
 }
 // Returns I - 2 * dot(N, I) * N.
 Operands reflect(Arithmetic& a, const Arguments& x) {
-  const Operand twice = a.mul(a.constant(2), math::dot(a, x[1], x[0]));
+  const Operand minus_twice = a.mul(a.constant(-2), math::dot(a, x[1], x[0]));
   Operands result;
-  for (size_t i = 0; i < x[0].size(); ++i) result.push_back(a.sub(x[0][i], a.mul(twice, x[1][i])));
+  for (size_t i = 0; i < x[0].size(); ++i) result.push_back(a.fma(minus_twice, x[1][i], x[0][i]));
   return result;
 }
 // With k = 1 - eta^2 (1 - dot(N, I)^2), returns 0 for k < 0, else eta * I - (eta * dot(N, I) + sqrt(k)) * N.
 Operands refract(Arithmetic& a, const Arguments& x) {
   const Operand eta = x[2][0], one = a.constant(1);
   const Operand d = math::dot(a, x[1], x[0]);
-  const Operand k = a.sub(one, a.mul(a.mul(eta, eta), a.sub(one, a.mul(d, d))));
+  const Operand k = a.fma(a.negative(a.mul(eta, eta)), a.fma(a.negative(d), d, one), one);
   const Operand total_reflection = a.less(k, a.constant(0));
-  const Operand along = a.add(a.mul(eta, d), a.sqrt(k));
+  const Operand against = a.negative(a.fma(eta, d, a.sqrt(k)));
   Operands result;
   for (size_t i = 0; i < x[0].size(); ++i)
-    result.push_back(
-        a.select(total_reflection, a.constant(0), a.sub(a.mul(eta, x[0][i]), a.mul(along, x[1][i]))));
+    result.push_back(a.select(total_reflection, a.constant(0), a.fma(against, x[1][i], a.mul(eta, x[0][i]))));
   return result;
 }
 // Returns N if dot(Nref, I) < 0, and -N otherwise.

@@ -52,8 +52,8 @@ Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficient
 }
 
 Operand dot(Arithmetic& a, const Operands& x, const Operands& y) {
-  Operand sum = a.mul(x[0], y[0]);
-  for (size_t i = 1; i < x.size(); ++i) sum = a.add(sum, a.mul(x[i], y[i]));
+  Operand sum = a.mul(x.back(), y.back());
+  for (size_t i = x.size() - 1; i-- > 0;) sum = a.fma(x[i], y[i], sum);
   return sum;
 }
 

@@ -20,7 +20,8 @@ inline Operand with_sign(Emitter& e, Operand magnitude, Operand sign) {
 // Returns x + x * z * P(z), where z = x^2.
 Operand odd(Emitter& e, Operand x, Operand z, std::span<const float> coefficients);
 
-// Adds the products left to right and rounds each of them.
+// Adds the products from the last to the first by fma. The order is the one in which a driver's reflect()
+// adds.
 Operand dot(Arithmetic& a, const Operands& x, const Operands& y);
 
 // These functions work in single precision with polynomials in fma form. The stated errors are those that the

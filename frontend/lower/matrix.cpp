@@ -1,4 +1,4 @@
-// Computes determinants and inverses of square matrices by cofactors, in the order of the formula.
+// Computes determinants and inverses of square matrices by cofactors, with sums of products as chains of fma.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/lower/math.h"
 
@@ -13,9 +13,9 @@ Operand minor_of(Arithmetic& a, const Operands& m, size_t n, const std::vector<s
   for (size_t c = 0; c < columns.size(); ++c) {
     std::vector<size_t> rest = columns;
     rest.erase(rest.begin() + long(c));
-    const Operand term =
-        a.mul(m[columns[c] * n + rows[0]], minor_of(a, m, n, {rows.begin() + 1, rows.end()}, rest));
-    sum = c == 0 ? term : c % 2 ? a.sub(sum, term) : a.add(sum, term);
+    const Operand factor = m[columns[c] * n + rows[0]],
+                  minor = minor_of(a, m, n, {rows.begin() + 1, rows.end()}, rest);
+    sum = c == 0 ? a.mul(factor, minor) : a.fma(c % 2 ? a.negative(factor) : factor, minor, sum);
   }
   return sum;
 }

@@ -50,10 +50,6 @@ float steadier(float p1, float p2, float q1, float q2, float r1, float r2) {
   return std::fma(q1, r2, -second);
 }
 
-float fused_dot(const Vec& a, const Vec& b) {
-  return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
-}
-
 // Finds where the triangle's plane crosses the ray. Returns false when the plane is edge-on.
 bool meets_plane(const Ray& ray, const Vec& a, const Vec& b, const Vec& c, float& t) {
   const Vec to_a = a - ray.origin, to_b = b - ray.origin, to_c = c - ray.origin;

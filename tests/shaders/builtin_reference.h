@@ -24,6 +24,8 @@ struct BuiltinReference {
   // The formula in single precision, for expressions that the driver contracts to an fma and Glint does not
   // (frontend/README.md).
   float (*in_order)(const Inputs&) = nullptr;
+  // With true, Glint has the driver's bits, except where numbers are subnormal, or nearly.
+  bool is_same_form = false;
 };
 
 // Returns the reference of an expression, or null.

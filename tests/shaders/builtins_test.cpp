@@ -160,7 +160,7 @@ constexpr Exception kExceptions[] = {
 // Summarises the lanes of one expression.
 struct Result {
   uint32_t equal = 0, within = 0, excepted = 0, open = 0, wrong = 0;
-  double p99_ours = 0, p99_driver = 0;
+  double p99_ours = 0, p99_driver = 0, worst_ours = 0, worst_driver = 0;
   bool too_far = false;  // at the 99th percentile
   std::string first_wrong;
   std::set<std::string_view> reasons;
@@ -221,6 +221,11 @@ double percentile_99(const std::vector<double>& ulps) {
   return ulps.empty() ? 0 : ulps[size_t(0.99 * double(ulps.size() - 1))];
 }
 
+// The 99th percentile is held to the driver's: it may be this factor of it, because one rounding more or less
+// moves it by some percent, or this small.
+constexpr double kMostOfDriver = 1.1, kSmallUlps = 1.5;
+// Where results are smaller, products that the driver flushes to 0 may show in them.
+constexpr float kSmallestSame = 0x1p-100f;
 // Where Vulkan bounds no error, the error is still this small, except for the lanes that are counted as open.
 constexpr double kOpenUlps = 4;
 
@@ -239,7 +244,7 @@ Result compare_floats(const BuiltinReference& reference, const Recorded& recorde
                             driver_ulps = moderate_ulps(reference, recorded, driver);
   result.p99_ours = percentile_99(ulps);
   result.p99_driver = percentile_99(driver_ulps);
-  double p99_allowed = std::max(2 * result.p99_driver, 0.5);  // correct rounding is the best possible
+  double p99_allowed = std::max(kMostOfDriver * result.p99_driver, kSmallUlps);
   if (reference.in_order) {
     Words formula;
     for (uint32_t lane = 0; lane < kLanes; ++lane)
@@ -248,18 +253,21 @@ Result compare_floats(const BuiltinReference& reference, const Recorded& recorde
   }
   result.too_far = result.p99_ours > p99_allowed;
   const double driver_worst = driver_ulps.empty() ? 0 : driver_ulps.back();
+  result.worst_driver = driver_worst, result.worst_ours = ulps.empty() ? 0 : ulps.back();
   for (uint32_t lane = 0; lane < kLanes; ++lane) {
     const Inputs x = recorded.inputs(lane);
     const double v = reference.value(x);
     const double allowed = std::max(reference.bound(x).e,
                                     std::isinf(v) ? 0 : driver_worst * ulp(std::min(std::abs(v), kLargest)));
+    const float got = std::bit_cast<float>(ours[lane]);
     if (ours[lane] == driver[lane]) {
       ++result.equal;
+    } else if (reference.is_same_form && !any_subnormal(x) && std::abs(got) >= kSmallestSame) {
+      result.note_wrong(x, ours[lane], driver[lane], v, 0);
     } else if (reference.is_defined && !reference.is_defined(x)) {
       ++result.excepted;
       result.reasons.insert("outside of the function's domain, or NaN where one operand is chosen");
-    } else if (is_near(std::bit_cast<float>(ours[lane]), v,
-                       std::isinf(allowed) ? kOpenUlps * ulp(v) : allowed)) {
+    } else if (is_near(got, v, std::isinf(allowed) ? kOpenUlps * ulp(v) : allowed)) {
       ++result.within;
     } else if (std::isinf(allowed)) {
       ++result.open;
@@ -281,8 +289,8 @@ TEST_CASE("built-in functions of GLSL give a driver's integers, and floats withi
   }
   const Recorded recorded(folder);
   const Words ours = run_all(folder / "ops.comp", recorded);
-  fmt::print("{:61} {:>5} {:>6} {:>8} {:>5} {:>5} {:>11} {:>11}\n", "expression", "equal", "within",
-             "excepted", "open", "wrong", "p99 ulp", "driver's");
+  fmt::print("{:61} {:>5} {:>6} {:>8} {:>5} {:>5} {:>11} {:>11} {:>11} {:>11}\n", "expression", "equal",
+             "within", "excepted", "open", "wrong", "p99 ulp", "driver's", "worst", "driver's");
   size_t hold = 0;
   std::set<std::string_view> reasons;
   for (size_t op = 0; op < recorded.expressions.size(); ++op) {
@@ -295,9 +303,11 @@ TEST_CASE("built-in functions of GLSL give a driver's integers, and floats withi
                               : compare_integers(text, recorded, mine, theirs);
     hold += r.holds();
     reasons.insert(r.reasons.begin(), r.reasons.end());
-    fmt::print("{:61} {:5} {:6} {:8} {:5} {:5} {:>11} {:>11} {}\n", text, r.equal, r.within, r.excepted,
-               r.open, r.wrong, is_float ? fmt::format("{:.3g}", r.p99_ours) : "",
+    fmt::print("{:61} {:5} {:6} {:8} {:5} {:5} {:>11} {:>11} {:>11} {:>11} {}\n", text, r.equal, r.within,
+               r.excepted, r.open, r.wrong, is_float ? fmt::format("{:.3g}", r.p99_ours) : "",
                is_float ? fmt::format("{:.3g}", r.p99_driver) : "",
+               is_float ? fmt::format("{:.4g}", r.worst_ours) : "",
+               is_float ? fmt::format("{:.4g}", r.worst_driver) : "",
                r.holds()   ? "holds"
                : r.too_far ? "FAILS at the 99th percentile"
                            : "FAILS: " + r.first_wrong);
