@@ -64,6 +64,13 @@ class CoreCell final : public Cell {
   // These serve launching, between windows only.
   uint32_t num_slots() const { return warps_.size(); }
   uint32_t num_resident() const { return warps_.num_resident(); }
+  // Returns a resident warp for which `is_wanted` holds, in the order of slots, or null.
+  template <class IsWanted>
+  const exec::WarpContext* find_warp(IsWanted&& is_wanted) const {
+    for (uint32_t slot = 0; slot < warps_.size(); ++slot)
+      if (warps_.is_resident(slot) && is_wanted(warps_[slot].warp)) return &warps_[slot].warp;
+    return nullptr;
+  }
   // Returns whether there is room for a whole block: warp slots, shared memory, and a block slot. Model: a
   // warp's slot and registers are free when the warp has ended; hardware keeps them until the block has
   // ended.

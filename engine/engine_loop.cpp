@@ -17,7 +17,7 @@ uint32_t EngineLoop::num_threads(uint32_t threads, size_t cells) {
   return std::min(wanted, uint32_t(std::max<size_t>(cells, 1)));
 }
 
-Cycle EngineLoop::run(const Between& between) {
+Cycle EngineLoop::run(const Between& between, Cycle look_at) {
   if (const uint32_t threads = num_threads(options_.threads, cells_.size()); threads > 1 && !pool_)
     pool_ = std::make_unique<CellPool>(cells_, threads, options_.homes);
   uint64_t last_progress = progress();
@@ -28,7 +28,16 @@ Cycle EngineLoop::run(const Between& between) {
     if (!options_.no_skip) {
       const Cycle event = next_event(now);
       if (event == kNever) throw_stuck(now, "nothing is left that could happen");
-      now = std::max(now, event / options_.turn * options_.turn);
+      const Cycle next_turn = std::max(now, event / options_.turn * options_.turn);
+      if (now < look_at && next_turn >= look_at) {
+        const Cycle turn_to_look = (look_at + options_.turn - 1) / options_.turn * options_.turn;
+        look_at = kNever;
+        if (turn_to_look > now && turn_to_look <= next_turn) {
+          now = turn_to_look;
+          continue;
+        }
+      }
+      now = next_turn;
     }
     run_turn(now, last_progress);
     const uint64_t moved = progress();

@@ -44,10 +44,11 @@ class EngineLoop {
   void add(Cell& cell) { cells_.push_back(&cell); }
   void add(ChannelBase& channel) { channels_.push_back(&channel); }
 
-  // Runs to the end, and returns the start of the first turn that was not run. Throws Error(Exit::Stuck) with
-  // the description of every unfinished cell when nothing has moved for `watchdog` cycles or nothing will
-  // move again.
-  Cycle run(const Between& between);
+  // Runs to the end, and returns the start of the first turn that was not run. `between` is called for the
+  // turn that begins at `look_at` or next after it, even if idle time around it is skipped. Throws
+  // Error(Exit::Stuck) with the description of every unfinished cell when nothing has moved for `watchdog`
+  // cycles or nothing will move again.
+  Cycle run(const Between& between, Cycle look_at = kNever);
 
   // Returns the number of threads that this host uses for `cells` cells when `threads` is asked for.
   static uint32_t num_threads(uint32_t threads, size_t cells);

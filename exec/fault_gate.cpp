@@ -6,13 +6,16 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "exec/endless_loops.h"
 #include "exec/launch.h"
 
 namespace glint::exec {
 
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget) {
   const int lane = warp.simt.active ? std::countr_zero(warp.simt.active) : 0;
-  return {fmt::format("no end in sight: the warp has executed more than {} instructions", instruction_budget),
+  const std::string loops = loops_around(*world.image, pc);
+  return {fmt::format("no end in sight: the warp has executed more than {} instructions{}{}",
+                      instruction_budget, loops.empty() ? "" : "; ", loops),
           world.image->place_of(pc), launch_id(world, warp.warp_index, lane)};
 }
 

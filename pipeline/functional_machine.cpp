@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/num_lanes.h"
+#include "exec/endless_loops.h"
 #include "rtunit/traversal/traversal.h"
 
 namespace glint::pipeline {
@@ -34,8 +35,9 @@ constexpr uint64_t kQuantum = 10'000;
 
 class Runner {
  public:
-  Runner(const exec::World& world, uint64_t instruction_budget, core::LaunchCosts* costs)
-      : executor(world), world_(world), budget_(instruction_budget) {
+  Runner(const exec::World& world, uint64_t instruction_budget, const LaunchWatch& watch,
+         core::LaunchCosts* costs)
+      : executor(world), world_(world), watch_(watch), budget_(instruction_budget), endless_(*world.image) {
     if (!costs) return;
     costs_ = std::make_unique<core::CostRecorder>(*costs, executor.warps_per_block());
     executor.called.listen([this](const exec::Called& called) {
@@ -43,7 +45,8 @@ class Runner {
     });
   }
 
-  void run_block(uint32_t index) {
+  // Returns false when the watch has ended the launch.
+  bool run_block(uint32_t index) {
     warps_.resize(executor.warps_per_block());
     executor.start(block_, index);
     for (uint32_t w = 0; w < warps_.size(); ++w) {
@@ -53,8 +56,23 @@ class Runner {
     // The warps take turns. A warp at a barrier waits for one that runs, and the executor ensures that there
     // is one.
     while (block_.live() != 0)
-      for (WarpContext& warp : warps_)
-        if (block_.live() >> warp.warp_in_block & 1) run_warp(warp);
+      for (WarpContext& warp : warps_) {
+        if (!(block_.live() >> warp.warp_in_block & 1)) continue;
+        run_warp(warp);
+        if (watch_.stop && watch_.stop()) return false;
+        tell(uint64_t{index} * warps_.size());
+      }
+    return true;
+  }
+
+  void tell(uint64_t ended_warps) {
+    if (watch_.progress) watch_.progress(progress(ended_warps));
+  }
+
+  LaunchProgress progress(uint64_t ended_warps) const {
+    LaunchProgress out{.ended_warps = ended_warps, .num_warps = executor.num_warps()};
+    for (const ClassCounts& by_class : counts.by_class) out.instructions += by_class.instructions;
+    return out;
   }
 
   Executor executor;
@@ -77,6 +95,8 @@ class Runner {
         throw Error(Exit::Fault,
                     executor.passed().with(exec::no_end_in_sight(world_, warp, issued.pc, budget_)));
     }
+    if (endless_.any() && block_.live() >> warp.warp_in_block & 1 && endless_.holds(warp.simt.pc))
+      throw Error(Exit::Fault, executor.passed().with(endless_.fault(world_, warp)));
   }
 
   void answer(WarpContext& warp) {
@@ -88,7 +108,9 @@ class Runner {
   }
 
   const exec::World& world_;
+  const LaunchWatch& watch_;
   const uint64_t budget_;
+  const exec::EndlessLoops endless_;
   exec::Block block_;
   std::vector<WarpContext> warps_;
   std::unique_ptr<core::CostRecorder> costs_;  // null: costs were not asked for
@@ -97,14 +119,18 @@ class Runner {
 }  // namespace
 
 FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_budget,
-                                const std::function<void(uint64_t, uint64_t)>& progress,
-                                const Probe<exec::Retired>::Listener& listener, core::LaunchCosts* costs) {
-  Runner runner(world, instruction_budget, costs);
+                                const LaunchWatch& watch, const Probe<exec::Retired>::Listener& listener,
+                                core::LaunchCosts* costs) {
+  Runner runner(world, instruction_budget, watch, costs);
   if (listener) runner.executor.retired.listen(listener);
   const uint32_t num_blocks = runner.executor.num_blocks(), warps = runner.executor.warps_per_block();
   for (uint32_t index = 0; index < num_blocks; ++index) {
-    runner.run_block(index);
-    if (progress) progress(uint64_t(index + 1) * warps, uint64_t(num_blocks) * warps);
+    if (!runner.run_block(index)) {
+      runner.counts.end = LaunchEnd::Stopped;
+      runner.counts.progress = runner.progress(uint64_t(index) * warps);
+      break;
+    }
+    runner.tell(uint64_t(index + 1) * warps);
   }
   runner.counts.faults = runner.executor.passed();
   return runner.counts;

@@ -3,7 +3,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
 
 #include "core/cost_recorder.h"
 #include "pipeline/render.h"
@@ -14,14 +13,15 @@ struct FunctionalCounts {
   std::array<ClassCounts, size_t(isa::Class::Count)> by_class{};
   RayCounts rays;
   exec::FaultLog faults;  // the faults that were let pass
+  LaunchEnd end = LaunchEnd::Whole;
+  LaunchProgress progress;
 };
 
-// Runs a launch. Throws Error(Exit::Fault) when a warp does something wrong or executes more than
-// `instruction_budget` instructions. `listener`, when given, hears of every retired instruction, and `costs`,
-// when given, is filled in.
+// Runs a launch. Throws Error(Exit::Fault) when a warp does something wrong, comes into a loop that nothing
+// leads out of, or executes more than `instruction_budget` instructions. `listener`, when given, hears of
+// every retired instruction, and `costs`, when given, is filled in.
 FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_budget,
-                                const std::function<void(uint64_t done, uint64_t total)>& progress,
-                                const Probe<exec::Retired>::Listener& listener = {},
+                                const LaunchWatch& watch, const Probe<exec::Retired>::Listener& listener = {},
                                 core::LaunchCosts* costs = nullptr);
 
 // Traverses the rays that `warp` waits for and answers them. Adds what the traversal did to `counts`.

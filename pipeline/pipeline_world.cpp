@@ -334,9 +334,8 @@ std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
 }
 
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
-                          uint32_t threads, const std::function<void(uint64_t, uint64_t)>& progress,
-                          const Observation& observe) {
-  RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, threads, progress, observe);
+                          uint32_t threads, const LaunchWatch& watch, const Observation& observe) {
+  RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, threads, watch, observe);
   result.structures = pipeline.structures;
   result.warnings = pipeline.warnings;
   return result;

@@ -70,8 +70,6 @@ class PipelineWorld {
 
 // Runs the pipeline. The result has counts, statistics and time, but no picture. Throws as render() does.
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
-                          uint32_t threads,
-                          const std::function<void(uint64_t done, uint64_t total)>& progress,
-                          const Observation& observe = {});
+                          uint32_t threads, const LaunchWatch& watch, const Observation& observe = {});
 
 }  // namespace glint::pipeline

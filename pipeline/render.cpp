@@ -23,8 +23,7 @@ const stats::Group& RenderResult::statistics() const {
 }
 
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
-                       uint32_t threads, const std::function<void(uint64_t, uint64_t)>& progress,
-                       const Observation& observation) {
+                       uint32_t threads, const LaunchWatch& watch, const Observation& observation) {
   RenderResult result;
   const auto costs = observation.heat ? std::make_unique<core::LaunchCosts>(world) : nullptr;
   const auto begin = std::chrono::steady_clock::now();
@@ -35,7 +34,9 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
         costs ? record_costs(*machine, *costs) : std::vector<std::unique_ptr<core::CostRecorder>>{};
     const auto trace_recorders =
         observation.trace.wanted ? record_trace(*machine, *world.image, observation.trace) : TraceRecorders{};
-    result.cycles = machine->run(progress);
+    result.cycles = machine->run(watch);
+    result.end = machine->end();
+    result.progress = machine->progress();
     machine->collect(result);
     result.faults = machine->passed();
     if (observation.profile) result.profile = profile_of(*machine, *world.image);
@@ -46,7 +47,9 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
     result.stats = std::make_unique<RunStats>(std::move(machine));
   } else {
     const FunctionalCounts counts =
-        run_functional(world, gpu.core.instruction_budget, progress, {}, costs.get());
+        run_functional(world, gpu.core.instruction_budget, watch, {}, costs.get());
+    result.end = counts.end;
+    result.progress = counts.progress;
     std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
     result.rays = counts.rays;
     result.faults = counts.faults;
@@ -65,7 +68,7 @@ RenderResult render(const RenderJob& job) {
   SceneWorld scene(job);
   scene.world.on_fault = job.on_fault;
   RenderResult result =
-      run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.progress, job.observe);
+      run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.watch, job.observe);
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "base/trace_table.h"
 #include "exec/executor.h"
 #include "frontend/compile.h"
+#include "pipeline/launch_watch.h"
 #include "pipeline/params.h"
 #include "pipeline/run_profile.h"
 #include "scenes/camera.h"
@@ -37,8 +37,7 @@ struct RenderJob {
   std::string shader_dir;                     // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
   exec::PrintLog* prints = nullptr;  // what the shaders print
-  // Is called now and then with the number of the launch's warps that have ended.
-  std::function<void(uint64_t done, uint64_t total)> progress;
+  LaunchWatch watch;
   exec::OnFault on_fault = exec::OnFault::Stop;
   Observation observe;  // what to note of a run of the timing machine; `heat` serves either machine
 };
@@ -69,9 +68,11 @@ struct RenderResult {
   RenderResult& operator=(RenderResult&&) noexcept;
 
   uint32_t width = 0, height = 0;
-  std::vector<float> rgba;          // what the shader stored to binding 2, row 0 first
-  std::vector<float> accumulation;  // binding 1, the sum over samples
-  uint64_t cycles = 0;              // cycles of the timing machine
+  std::vector<float> rgba;           // what the shader stored to binding 2, row 0 first
+  std::vector<float> accumulation;   // binding 1, the sum over samples
+  LaunchEnd end = LaunchEnd::Whole;  // otherwise all that follows is of a part of the launch
+  LaunchProgress progress;           // how far a launch came that was ended early
+  uint64_t cycles = 0;               // cycles of the timing machine
   uint64_t warp_instructions = 0, lane_instructions = 0;
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;
@@ -90,11 +91,9 @@ struct RenderResult {
 
 // Runs the launch of a world on either machine. The result has everything except pictures, structures and
 // warnings. The timing machine runs on `threads` threads of the host, and with `no_skip` it simulates every
-// cycle (HostOptions). `progress` hears how many of the launch's warps have ended, and `observe` says what
-// else to note of a timing run. Throws as render() does.
+// cycle (HostOptions). `observe` says what else to note of a timing run. Throws as render() does.
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
-                       uint32_t threads, const std::function<void(uint64_t done, uint64_t total)>& progress,
-                       const Observation& observe = {});
+                       uint32_t threads, const LaunchWatch& watch, const Observation& observe = {});
 
 // Renders a frame. Throws UserError or UnsupportedError before anything runs, Error(Exit::Fault) with place
 // and launch id when the shaders do something wrong, and Error(Exit::Stuck) when the machine makes no

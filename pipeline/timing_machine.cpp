@@ -13,6 +13,14 @@
 namespace glint::pipeline {
 namespace {
 
+constexpr Cycle kLookPeriod = 4096;  // Choice: looks at the warps are so rare that they cost nothing
+
+// Returns why the watch ends the launch before the turn at `now`, or Whole when it does not.
+LaunchEnd early_end(const LaunchWatch& watch, Cycle now) {
+  if (watch.max_cycles && now >= watch.max_cycles) return LaunchEnd::MaxCycles;
+  return watch.stop && watch.stop() ? LaunchEnd::Stopped : LaunchEnd::Whole;
+}
+
 // Checks the parameters before anything is built from them.
 const GpuParams& checked(const GpuParams& params, const exec::World& world) {
   Diagnostics diagnostics;
@@ -37,7 +45,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
     : params_(checked(params, world)),
       world_(world),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
-      watch_(params_.core.livelock_budget),
+      endless_(*world.image),
+      livelock_(params_.core.livelock_budget),
       engine_({.turn = memory_.shortest_latency(),
                .no_skip = no_skip,
                .threads = host.threads,
@@ -81,47 +90,91 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
 }
 
-Cycle TimingMachine::run(const std::function<void(uint64_t, uint64_t)>& progress) {
+Cycle TimingMachine::run(const LaunchWatch& watch) {
   std::vector<core::CoreCell*> cores;
   for (auto& core : cores_) cores.push_back(core.get());
   const exec::Executor executor(world_);
-  const uint32_t num_warps = executor.num_warps();
   core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores);
   const exec::Fault* fault = nullptr;
-  const Cycle quiet = engine_.run([&](Cycle now) {
-    watch_.look(now, exec::MemoryView::commit(views_), [&] {
-      uint64_t changes = 0;
-      for (const auto& core : cores_) changes += core->changes();
-      return changes;
-    });
-    for (const auto& core : cores_)
-      if (!fault && core->fault()) fault = &*core->fault();
-    if (fault) return EngineLoop::Next::Stop;
-    if (watch_.is_over(now)) throw_livelock(now);
-    dispatcher.dispatch(now);
-    if (progress) {
-      uint64_t ended = uint64_t{dispatcher.num_dispatched()} * executor.warps_per_block();
-      for (const auto& core : cores_) ended -= core->num_resident();
-      progress(ended, num_warps);
-    }
-    return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
-  });
+  progress_.num_warps = executor.num_warps();
+  const auto note_progress = [&](Cycle now) {
+    progress_.ended_warps = uint64_t{dispatcher.num_dispatched()} * executor.warps_per_block();
+    for (const auto& core : cores_) progress_.ended_warps -= core->num_resident();
+    progress_.cycles = now;
+  };
+  const bool may_be_endless = endless_.any() && watch.max_cycles == 0;
+  Cycle next_look = 0;
+  const Cycle quiet = engine_.run(
+      [&](Cycle now) {
+        livelock_.look(now, exec::MemoryView::commit(views_), [&] {
+          uint64_t changes = 0;
+          for (const auto& core : cores_) changes += core->changes();
+          return changes;
+        });
+        for (const auto& core : cores_)
+          if (!fault && core->fault()) fault = &*core->fault();
+        if (fault) return EngineLoop::Next::Stop;
+        if (livelock_.is_over(now)) throw_livelock(now);
+        if (const LaunchEnd end = early_end(watch, now); end != LaunchEnd::Whole) {
+          note_progress(now);
+          progress_.instructions = instructions();
+          // A launch whose warps have all ended only waits for its last writes.
+          if (progress_.ended_warps < progress_.num_warps) {
+            end_ = end;
+            return EngineLoop::Next::Stop;
+          }
+        }
+        dispatcher.dispatch(now);
+        if (now >= next_look) {
+          next_look = now + kLookPeriod;
+          if (may_be_endless) refuse_endless_loops();
+          if (watch.progress) progress_.instructions = instructions();
+        }
+        if (watch.progress) {
+          note_progress(now);
+          watch.progress(progress_);
+        }
+        return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
+      },
+      watch.max_cycles ? watch.max_cycles : kNever);
   if (fault) throw Error(fault->exit(), passed().with(*fault));
-  Cycle end = 0;
-  for (const auto& core : cores_) end = std::max(end, core->active_until());
-  if (params_.core.ends_when_written) end = std::min(std::max(end, memory_.written_until()), quiet);
+  Cycle cycles = 0;
+  for (const auto& core : cores_) cycles = std::max(cycles, core->active_until());
+  if (params_.core.ends_when_written) cycles = std::min(std::max(cycles, memory_.written_until()), quiet);
+  if (end_ != LaunchEnd::Whole) cycles = quiet;
+  finish(quiet, cycles);
+  return cycles;
+}
+
+// Completes the statistics. A launch that was ended early leaves messages on their way, so only a whole one
+// balances.
+void TimingMachine::finish(Cycle quiet, Cycle cycles) {
   for (auto& core : cores_) core->finish(quiet);
   for (auto& unit : rt_units_) unit->finish(quiet);
   memory_.finish(quiet);
-  memory_.check_drained();
-  root_.cycles += end;
+  root_.cycles += cycles;
   root_.attributed += quiet;
-  const std::string lost = broken(balances(*this));
-  GLINT_CHECK(lost.empty(), "\n{}", lost);
+  if (end_ == LaunchEnd::Whole) {
+    memory_.check_drained();
+    const std::string lost = broken(balances(*this));
+    GLINT_CHECK(lost.empty(), "\n{}", lost);
+  }
   const exec::FaultLog faults = passed();
   for (size_t kind = 0; kind < size_t(exec::FaultKind::Count); ++kind)
     root_.faults.add(exec::FaultKind(kind), faults.count(exec::FaultKind(kind)));
-  return end;
+}
+
+uint64_t TimingMachine::instructions() const {
+  uint64_t sum = 0;
+  for (const auto& core : cores_) sum += core->stats().instructions.value();
+  return sum;
+}
+
+void TimingMachine::refuse_endless_loops() const {
+  for (const auto& core : cores_)
+    if (const exec::WarpContext* warp =
+            core->find_warp([&](const exec::WarpContext& one) { return endless_.holds(one.simt.pc); }))
+      throw Error(Exit::Fault, passed().with(endless_.fault(world_, *warp)));
 }
 
 // Throws an error about warps that go on for ever without any effect. Most of these wait for a spin lock
@@ -130,7 +183,7 @@ void TimingMachine::throw_livelock(Cycle now) const {
   std::string message = fmt::format(
       "the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and "
       "nothing in memory has changed\n",
-      now, watch_.since());
+      now, livelock_.since());
   for (const auto& core : cores_)
     if (!core->finished()) message += core->describe_stall();
   throw Error(Exit::Stuck,

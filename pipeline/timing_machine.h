@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "core/core_cell.h"
 #include "core/dispatcher.h"
 #include "engine/engine_loop.h"
+#include "exec/endless_loops.h"
 #include "memsys/memory_system.h"
 #include "pipeline/livelock_watch.h"
 #include "pipeline/render.h"
@@ -34,8 +34,10 @@ class TimingMachine {
   TimingMachine(const GpuParams& params, const exec::World& world, bool no_skip,
                 const HostOptions& host = {});
 
-  // Runs the launch to its end and returns its cycles. Throws as render() does.
-  Cycle run(const std::function<void(uint64_t done, uint64_t total)>& progress);
+  // Runs the launch to its end, or until the watch ends it, and returns its cycles. Throws as render() does.
+  Cycle run(const LaunchWatch& watch);
+  LaunchEnd end() const { return end_; }                        // why run() has ended
+  const LaunchProgress& progress() const { return progress_; }  // how far it came, if the watch has ended it
 
   // Returns what the cycles of every unit add up to after run().
   Cycle attributed_cycles() const { return root_.attributed.value(); }
@@ -58,6 +60,9 @@ class TimingMachine {
 
  private:
   [[noreturn]] void throw_livelock(Cycle now) const;
+  void refuse_endless_loops() const;
+  uint64_t instructions() const;
+  void finish(Cycle quiet, Cycle cycles);
 
   struct Root : stats::Group {
     Root() : Group(nullptr, "gpu") {}
@@ -81,7 +86,10 @@ class TimingMachine {
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
   std::vector<exec::MemoryView*> views_;  // those of all cores; empty when there is one core
-  LivelockWatch watch_;
+  const exec::EndlessLoops endless_;
+  LivelockWatch livelock_;
+  LaunchEnd end_ = LaunchEnd::Whole;
+  LaunchProgress progress_;
   EngineLoop engine_;
 };
 

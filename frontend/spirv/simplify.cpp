@@ -13,6 +13,7 @@
 #include "frontend/spirv/by_reference.h"
 #include "frontend/spirv/inline_scopes.h"
 #include "frontend/spirv/inlined_size.h"
+#include "frontend/spirv/kept_loops.h"
 #include "frontend/spirv/module_repairs.h"
 #include "frontend/spirv/shared_blocks.h"
 #include "frontend/spirv/spirv.h"
@@ -127,7 +128,7 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
                                          const std::vector<std::string>& passes, std::string* messages) {
   std::vector<uint32_t> output = after_passes(spirv, passes, messages);
   if (output.empty()) return {};
-  output = without_stray_lines(with_debug_prints(output));
+  output = without_stray_lines(with_debug_prints(without_marks(output)));
   const std::string after = validate_spirv(output);
   *messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};
@@ -137,7 +138,7 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
 // names its calls.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
                                 std::string* messages) {
-  const std::vector<uint32_t> input = with_plain_lines(with_known_prints(spirv));
+  const std::vector<uint32_t> input = with_plain_lines(with_kept_loops(with_known_prints(spirv)));
   if (const std::optional<std::vector<uint32_t>> marked = with_inline_scopes(input)) {
     // The first pass strips foreign sets, so it would strip the marks. A marked module does not need it,
     // because it has no other such sets.

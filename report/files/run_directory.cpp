@@ -219,6 +219,11 @@ void RunDirectory::write_run(const RunInfo& info) const {
   if (!info.saved.empty()) json["saved"] = info.saved;
   written_.erase("run.json");  // A file cannot hold its own sum.
   json["files"] = json_of(written_);
+  if (const auto& part = info.part)
+    json["partial"] = {{"reason", part->reason},
+                       {"cycles", part->cycles},
+                       {"ended_warps", part->ended_warps},
+                       {"num_warps", part->num_warps}};
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;

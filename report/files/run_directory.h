@@ -35,6 +35,12 @@ struct ResidencyInfo {
   std::string limit;
 };
 
+// Says that a launch was ended early, and how far it came. Its results are those up to there.
+struct PartInfo {
+  std::string reason;  // "max_cycles", "SIGINT", "SIGTERM"
+  uint64_t cycles = 0, ended_warps = 0, num_warps = 0;
+};
+
 inline constexpr int kRunSchema = 1;  // schema of run.json
 
 // Holds what run.json says besides schema and paths. Only this file of a run holds wall-clock times.
@@ -57,8 +63,9 @@ struct RunInfo {
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
   std::vector<std::string> saved;  // files that a pipeline or a kernel was asked to keep
+  std::optional<PartInfo> part;
   int exit = 0;
-  std::string message;  // message of the error when exit is not 0
+  std::string message;  // why exit is not 0
 };
 
 // Writes a file under another name and renames it, so that a reader never sees half a file. When the file

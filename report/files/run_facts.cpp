@@ -52,6 +52,11 @@ constexpr Fact kFacts[] = {{"/schema", "number"},
                            {"/faults", "array"},
                            {"/saved", "array"},
                            {"/files", "object"},
+                           {"/partial", "object"},
+                           {"/partial/reason", "string"},
+                           {"/partial/cycles", "number"},
+                           {"/partial/ended_warps", "number"},
+                           {"/partial/num_warps", "number"},
                            {"/exit", "number"},
                            {"/message", "string"}};
 

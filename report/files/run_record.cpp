@@ -45,7 +45,7 @@ void RunRecord::add_finished(const std::string& directory) {
   if (const double schema = fact("schema").value_or(0); schema != kRunSchema)
     throw UserError({file}, fmt::format("it has schema {}, expected {}", schema, kRunSchema),
                     "another version of Glint wrote it: run it again with this one");
-  if (const double exit = fact("exit").value_or(0); exit != 0)
+  if (const double exit = fact("exit").value_or(0); exit != 0 && text("partial.reason").empty())
     throw UserError({file}, fmt::format("the run failed with exit code {}: {}", exit, text("message")),
                     "the run left no results: run it again");
 }

@@ -10,7 +10,7 @@
 namespace glint::report {
 
 // Throws UserError when run.json of a directory is absent, of another schema, or of a run that failed. In the
-// last case the error has that run's message.
+// last case the error has that run's message. A run that was ended early has results, and is accepted.
 void check_finished(const std::string& directory);
 
 class RunRecord {

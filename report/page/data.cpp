@@ -42,7 +42,7 @@ Json facts_of(const std::string& directory) {
   if (const int schema = facts.value("schema", 0); schema != kRunSchema)
     throw UserError({path}, fmt::format("it has schema {}, expected {}", schema, kRunSchema),
                     "another version of Glint wrote it: run it again with this one");
-  if (facts.value("exit", 0) != 0)
+  if (facts.value("exit", 0) != 0 && !facts.contains("partial"))
     throw UserError({path}, fmt::format("the run failed: {}", facts.value("message", "no message")),
                     "a report needs a run that finished");
   if (const std::string mode = facts.value("mode", ""); mode != "timing")

@@ -7,31 +7,48 @@
 
 namespace glint::report {
 namespace {
-constexpr int kBarWidth = 24;  // columns, so that label, bar and times stay within 80
+constexpr size_t kLineWidth = 80, kLabelWidth = 12;  // columns
+constexpr int kBarWidth = 24, kBarWidthWithWork = 8;
 constexpr std::chrono::milliseconds kRedraw{100};
+
+// Returns the label's first characters. A character of several bytes is kept or left out as a whole.
+std::string shortened(const std::string& label) {
+  if (label.size() <= kLabelWidth) return label;
+  size_t end = kLabelWidth;
+  while (end > 0 && (uint8_t(label[end]) & 0xc0) == 0x80) --end;
+  return label.substr(0, end);
+}
+
 }  // namespace
 
 std::string progress_line(const std::string& label, uint64_t done, uint64_t total, double elapsed,
-                          const Terminal& terminal) {
+                          const Terminal& terminal, const Work& work) {
   const double fraction = total ? double(done) / double(total) : 0.0;
+  const bool has_work = work.instructions > 0;
   std::string line =
-      fmt::format(" {} [{}] {:3.0f} %", label, bar(fraction, kBarWidth, terminal), fraction * 100);
+      fmt::format(" {} [{}] {:3.0f} %", has_work ? shortened(label) : label,
+                  bar(fraction, has_work ? kBarWidthWithWork : kBarWidth, terminal), fraction * 100);
   line += "  " + seconds(elapsed);
-  if (done > 0 && done < total) line += "  ETA " + seconds(elapsed * (1 - fraction) / fraction);
-  return line;
+  std::string left, speed;
+  if (done > 0 && done < total) left = "  ETA " + seconds(elapsed * (1 - fraction) / fraction);
+  if (work.cycles > 0) speed += fmt::format("  {} cycles", rate(double(work.cycles)));
+  if (has_work && elapsed > 0)
+    speed += fmt::format("  {} instr/s", rate(double(work.instructions) / elapsed));
+  if (display_width(line + left + speed) > kLineWidth) left.clear();
+  return line + left + speed;
 }
 
 Progress::Progress(std::FILE* stream, std::string label, Terminal terminal)
     : stream_(stream), label_(std::move(label)), terminal_(terminal), start_(Clock::now()), last_(start_) {
 }
 
-void Progress::update(uint64_t done, uint64_t total) {
+void Progress::update(uint64_t done, uint64_t total, const Work& work) {
   if (!stream_) return;
   const Clock::time_point now = Clock::now();
   if (now - last_ < kRedraw) return;
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  std::string line = progress_line(label_, done, total, elapsed, terminal_);
+  std::string line = progress_line(label_, done, total, elapsed, terminal_, work);
   const size_t width = display_width(line);
   if (width < drawn_) line.append(drawn_ - width, ' ');
   drawn_ = width;

@@ -11,9 +11,15 @@
 
 namespace glint::report {
 
-// Returns the line for `done` of `total` after `elapsed` seconds, without control characters.
+// Counts what a launch has done. It moves on even while no part of the whole is done.
+struct Work {
+  uint64_t cycles = 0, instructions = 0;
+};
+
+// Returns the line for `done` of `total` after `elapsed` seconds, without control characters. Cycles and
+// instructions per second are in it when there are some.
 std::string progress_line(const std::string& label, uint64_t done, uint64_t total, double elapsed,
-                          const Terminal& terminal);
+                          const Terminal& terminal, const Work& work = {});
 
 // Redraws at most ten times a second, so an update usually costs only a clock read.
 class Progress {
@@ -24,7 +30,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void update(uint64_t done, uint64_t total);
+  void update(uint64_t done, uint64_t total, const Work& work = {});
   void clear();  // wipes the line, so that the next text starts on a clean one
 
  private:

@@ -30,6 +30,9 @@ Exit run(const Session& session, const RunOptions& options) {
     if (observes(options.launch.observe))
       throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with Amber scripts",
                       "a script has no run directory");
+    if (options.launch.max_cycles)
+      throw UserError({}, "--max-cycles cannot be used with Amber scripts",
+                      "what a script expects needs whole launches; --max-instructions bounds a warp");
     std::vector<std::string> scripts = {what};
     scripts.insert(scripts.end(), options.more.begin(), options.more.end());
     return run_amber(session, scripts, options.launch, options.strict);

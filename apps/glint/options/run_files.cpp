@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "report/files/file_list.h"
+#include "report/files/run_record.h"
 
 namespace glint::app {
 
@@ -15,6 +16,10 @@ void tell_of_files(const std::vector<std::string>& directories) {
   for (const std::string& directory : directories) {
     const report::ListedFiles files = report::ListedFiles::of_run(directory);
     if (!files.has_list()) without.push_back(directory);
+    report::RunRecord facts;
+    facts.add_finished(directory);
+    if (!facts.text("partial.reason").empty())
+      fmt::print(stderr, "note: {} is partial: {}\n", directory, facts.text("message"));
     if (const std::vector<std::string> gone = files.gone(); !gone.empty())
       fmt::print(stderr, "note: {}: these files of the run are gone: {}\n", directory, fmt::join(gone, ", "));
   }

@@ -6,8 +6,8 @@
 
 namespace glint::app {
 
-// Prints to stderr which runs have no list of their files, and which files of a list are gone. The
-// directories are those of runs that could be read.
+// Prints to stderr which runs were ended early, which have no list of their files, and which files of a list
+// are gone. The directories are those of runs that could be read.
 void tell_of_files(const std::vector<std::string>& directories);
 
 }  // namespace glint::app

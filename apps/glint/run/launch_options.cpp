@@ -28,6 +28,13 @@ void add_machine_options(Command command, LaunchOptions& options) {
                   "Number of instructions after which a warp is taken to be endless")
       .in_range(uint64_t{1}, kMostCount);
   command
+      .add_option(
+          "--max-cycles", options.max_cycles,
+          "Cycle at which the launch is ended early; what it did up to then is kept, and the exit code "
+          "is 6 (default: no limit)")
+      .type_name("CYCLES")
+      .positive();
+  command
       .add_option("--on-fault", options.on_fault_name,
                   "Selects what a fault does: stop ends the run at the first fault; with warn, wrong loads "
                   "give 0, wrong stores do nothing, and each is listed (docs/errors.md)")
@@ -67,6 +74,12 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   options.mode_given = command.count("--mode") > 0;
   options.on_fault = options.on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
+}
+
+void check_max_cycles(const LaunchOptions& options, bool timing) {
+  if (options.max_cycles && !timing)
+    throw UserError({}, "--max-cycles needs cycles, and the functional machine has none",
+                    "--max-instructions bounds the instructions of a warp");
 }
 
 pipeline::GpuParams gpu_of(const Resources& resources, const LaunchOptions& options) {

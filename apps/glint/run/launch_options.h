@@ -21,6 +21,7 @@ struct LaunchOptions {
   std::string out;                                // run directory; empty: the kind of launch chooses one
   std::vector<std::string> settings;              // KEY=VALUE
   uint64_t max_instructions = 0;                  // limit of a warp; 0: the limit of the configuration
+  uint64_t max_cycles = 0;                        // limit of the launch; 0: none
   bool json = false;                              // print statistics as JSON instead of the summary
   bool no_skip = false;                           // step every cycle
   uint32_t threads = 0;                           // threads of the host; 0: all processors
@@ -35,6 +36,9 @@ struct LaunchOptions {
 // parsing.
 void add_launch_options(Command command, LaunchOptions& options);
 void finish_launch_options(const Command& command, LaunchOptions& options);
+
+// Throws UserError when the functional machine is given a limit of cycles.
+void check_max_cycles(const LaunchOptions& options, bool timing);
 
 // Returns the configuration with its overrides, of which max_instructions is one.
 pipeline::GpuParams gpu_of(const Resources& resources, const LaunchOptions& options);

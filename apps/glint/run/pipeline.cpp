@@ -139,6 +139,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   if (budget) job.gpu.core.instruction_budget = budget;
   job.timing = mode == "timing";
   check_observation(options.observe, job.timing);
+  check_max_cycles(options, job.timing);
   job.no_skip = options.no_skip;
   pipeline::PipelineWorld world(description, job.gpu);
   exec::PrintLog prints(options.print_limit);
@@ -156,9 +157,9 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(
-      session, "running", directory, info,
-      [&](const ShowProgress& progress) {
-        return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, progress,
+      session, options.max_cycles, directory, info,
+      [&](const pipeline::LaunchWatch& watch) {
+        return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, watch,
                                       options.observe);
       },
       [&](const pipeline::RenderResult& ended) {
@@ -169,8 +170,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
           files.push_back(std::move(line));
       },
       &prints);
-  print_result(session, options.json, job, result, title, std::move(files));
-  return Exit::Ok;
+  return print_result(session, options.json, job, result, info, title, std::move(files));
 }
 
 }  // namespace glint::app

@@ -103,6 +103,7 @@ bool names_kernel(const std::string& what) {
 Exit run_ptx(const Session& session, const std::string& what, const std::string& launch_file,
              const LaunchOptions& options) {
   check_observation(options.observe, options.mode == "timing");
+  check_max_cycles(options, options.mode == "timing");
   const bool is_ptx = what.ends_with(".ptx");
   if (is_ptx && launch_file.empty())
     throw UserError(
@@ -138,10 +139,10 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(
-      session, "running", directory, info,
-      [&](const ShowProgress& progress) {
+      session, options.max_cycles, directory, info,
+      [&](const pipeline::LaunchWatch& watch) {
         return pipeline::run_world(launched.world.world, job.gpu, options.mode == "timing", options.no_skip,
-                                   options.threads, progress, options.observe);
+                                   options.threads, watch, options.observe);
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics());
@@ -150,8 +151,7 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
       });
-  print_result(session, options.json, job, result, title, std::move(files));
-  return Exit::Ok;
+  return print_result(session, options.json, job, result, info, title, std::move(files));
 }
 
 }  // namespace glint::app

@@ -3,12 +3,15 @@
 #include "apps/glint/run/recorded_run.h"
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <fmt/chrono.h>
 #include <new>
+#include <optional>
 
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/options/config.h"
+#include "apps/glint/run/stop_signals.h"
 #include "apps/glint/run/summary.h"
 #include "memsys/peak.h"
 #include "report/files/stat_writer.h"
@@ -51,6 +54,23 @@ void add_result(const pipeline::RenderResult& result, report::RunInfo& info) {
                       std::string(name_of(result.residency.limit))};
 }
 
+constexpr int kShellSignal = 128;  // A shell adds the signal's number to this (POSIX).
+
+// Adds why and when a launch was ended early.
+void add_part(const pipeline::RenderResult& result, int signal, report::RunInfo& info) {
+  const pipeline::LaunchProgress& at = result.progress;
+  const bool is_stopped = result.end == pipeline::LaunchEnd::Stopped;
+  info.part = {!is_stopped        ? "max_cycles"
+               : signal == SIGINT ? "SIGINT"
+                                  : "SIGTERM",
+               at.cycles, at.ended_warps, at.num_warps};
+  info.exit = is_stopped ? kShellSignal + signal : int(kReachedMaxCycles);
+  info.message =
+      fmt::format("the launch was ended early{}, by {}: {} of {} warps have ended",
+                  at.cycles ? fmt::format(" at cycle {}", at.cycles) : "",
+                  is_stopped ? name_of_signal(signal) : "--max-cycles", at.ended_warps, at.num_warps);
+}
+
 void keep_prints(const std::string& printed, const report::RunDirectory& directory) {
   if (printed.empty()) return;
   fmt::print(stderr, "{}", printed);
@@ -65,13 +85,25 @@ void begin_directory(report::RunDirectory& directory, const report::RunInfo& inf
   directory.write_config(describe_params(gpu), "Resolved configuration of: " + title);
 }
 
-pipeline::RenderResult run_recorded(const Session& session, const std::string& what,
+pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
                                     const report::RunDirectory& directory, report::RunInfo& info,
-                                    const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
+                                    const RunLaunch& run,
                                     const std::function<void(const pipeline::RenderResult&)>& keep,
                                     exec::PrintLog* prints) {
-  report::Progress progress(session.on_terminal ? stdout : nullptr, what, session.terminal);
-  ProgressPipe pipe(session.progress_descriptor, what);
+  report::Progress progress(session.on_terminal ? stdout : nullptr, info.scene, session.terminal);
+  ProgressPipe pipe(session.progress_descriptor, "rendering");
+  // Before the launch begins, signals end the process at once.
+  std::optional<StopSignals> signals;
+  pipeline::LaunchWatch watch;
+  watch.progress = [&](const pipeline::LaunchProgress& at) {
+    progress.update(at.ended_warps, at.num_warps, {at.cycles, at.instructions});
+    pipe.update(at.ended_warps, at.num_warps);
+  };
+  watch.stop = [&] {
+    if (!signals) signals.emplace();
+    return signals->taken() != 0;
+  };
+  watch.max_cycles = max_cycles;
   const auto start = std::chrono::steady_clock::now();
   const auto stop_watch = [&] {
     info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -89,12 +121,12 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
     }
   };
   try {
-    pipeline::RenderResult result = run([&](uint64_t done, uint64_t total) {
-      progress.update(done, total);
-      pipe.update(done, total);
-    });
+    pipeline::RenderResult result = run(watch);
     stop_watch();
+    const int signal = signals ? signals->taken() : 0;
+    signals.reset();
     add_result(result, info);
+    if (result.end != pipeline::LaunchEnd::Whole) add_part(result, signal, info);
     keep_prints(prints ? prints->take() : "", directory);
     keep(result);
     directory.write_run(info);
@@ -108,19 +140,21 @@ pipeline::RenderResult run_recorded(const Session& session, const std::string& w
   }
 }
 
-void print_result(const Session& session, bool json, const pipeline::RenderJob& job,
-                  const pipeline::RenderResult& result, const std::string& title,
+Exit print_result(const Session& session, bool json, const pipeline::RenderJob& job,
+                  const pipeline::RenderResult& result, const report::RunInfo& info, const std::string& title,
                   std::vector<std::string> files) {
   if (!result.faults.empty()) fmt::print(stderr, "{}\n", result.faults.to_string());
+  if (info.part) fmt::print(stderr, "warning: {}\n  note: all results are those up to there\n", info.message);
   if (json) {
     write_output("", Registry<report::StatWriter>::instance().entry("json").make_default({})->write(
                          result.statistics()));
-    return;
+    return Exit(info.exit);
   }
   report::Summary summary = summarise(job, result);
   summary.title = title;
   summary.files = std::move(files);
   write_output("", report::format_summary(summary, session.terminal));
+  return Exit(info.exit);
 }
 
 }  // namespace glint::app

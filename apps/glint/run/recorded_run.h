@@ -21,20 +21,24 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
 void begin_directory(report::RunDirectory& directory, const report::RunInfo& info,
                      const pipeline::GpuParams& gpu, const std::string& title);
 
-// Calls `run` with the function that shows progress on the terminal under the name `what`, then `keep` to
-// write the run's files. Writes run.json last. When one of the two throws, run.json has no results, and the
-// error is passed on. What the shaders have printed goes to stderr and printf.txt.
-using ShowProgress = std::function<void(uint64_t done, uint64_t total)>;
-pipeline::RenderResult run_recorded(const Session& session, const std::string& what,
+// Calls `run` with a watch that shows progress on the terminal and ends the launch at `max_cycles` or at a
+// signal to stop, then `keep` to write the run's files. Writes run.json last, which says how far a launch
+// came that was ended early. When one of the two throws, run.json has no results, and the error is passed on.
+// What the shaders have printed goes to stderr and printf.txt.
+using RunLaunch = std::function<pipeline::RenderResult(const pipeline::LaunchWatch&)>;
+pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
                                     const report::RunDirectory& directory, report::RunInfo& info,
-                                    const std::function<pipeline::RenderResult(const ShowProgress&)>& run,
+                                    const RunLaunch& run,
                                     const std::function<void(const pipeline::RenderResult&)>& keep,
                                     exec::PrintLog* prints = nullptr);
 
+// Exit code of a run that --max-cycles has ended. Signals have the codes that shells give them.
+inline constexpr Exit kReachedMaxCycles = Exit(6);
+
 // Prints the faults that were let pass to stderr. Prints the statistics as JSON, or the summary of a run with
-// lines about the files that it left.
-void print_result(const Session& session, bool json, const pipeline::RenderJob& job,
-                  const pipeline::RenderResult& result, const std::string& title,
+// lines about the files that it left. Returns the exit code that `info` has, and says why it is not 0.
+Exit print_result(const Session& session, bool json, const pipeline::RenderJob& job,
+                  const pipeline::RenderResult& result, const report::RunInfo& info, const std::string& title,
                   std::vector<std::string> files);
 
 }  // namespace glint::app

@@ -62,6 +62,7 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
   job.on_fault = launch.on_fault;
   job.observe = launch.observe;
   check_observation(job.observe, job.timing);
+  check_max_cycles(launch, job.timing);
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
@@ -96,10 +97,10 @@ report::RunInfo describe_run(const Session& session, const SceneOptions& options
 
 // Renders the job and leaves its files in the directory.
 pipeline::RenderResult render_into(const Session& session, const report::RunDirectory& directory,
-                                   report::RunInfo& info, pipeline::RenderJob& job,
+                                   report::RunInfo& info, pipeline::RenderJob& job, uint64_t max_cycles,
                                    std::vector<std::string>& files) {
-  const auto render = [&](const ShowProgress& progress) {
-    job.progress = progress;
+  const auto render = [&](const pipeline::LaunchWatch& watch) {
+    job.watch = watch;
     pipeline::RenderResult rendered = pipeline::render(job);
     const pipeline::StructureCounts& made = rendered.structures;
     info.structures = {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
@@ -112,7 +113,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));
   };
-  return run_recorded(session, "rendering", directory, info, render, keep, job.prints);
+  return run_recorded(session, max_cycles, directory, info, render, keep, job.prints);
 }
 
 }  // namespace
@@ -136,10 +137,9 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
   begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files = {"picture    " + directory.path_of("image.png"),
                                     "statistics " + directory.path_of("stats.txt")};
-  const pipeline::RenderResult result = render_into(session, directory, info, job, files);
+  const pipeline::RenderResult result = render_into(session, directory, info, job, launch.max_cycles, files);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
-  print_result(session, launch.json, job, result, title, std::move(files));
-  return Exit::Ok;
+  return print_result(session, launch.json, job, result, info, title, std::move(files));
 }
 
 }  // namespace glint::app

@@ -89,6 +89,26 @@ TEST_CASE("without skipping every window is visited") {
   CHECK(cell.windows.size() == 32);
 }
 
+TEST_CASE("a cycle to look at is looked at in idle time, too, and changes nothing") {
+  for (bool no_skip : {false, true}) {
+    RelayCell cell({3, 1000}, nullptr, nullptr);
+    EngineLoop engine({32, no_skip, 100'000});
+    engine.add(cell);
+    std::vector<Cycle> looks;
+    const auto between = [&](Cycle now) {
+      looks.push_back(now);
+      return now < 501 ? EngineLoop::Next::NothingMore : EngineLoop::Next::Stop;
+    };
+    CHECK(engine.run(between, 501) == 512);
+    CHECK(looks.back() == 512);
+
+    RelayCell other({3, 1000}, nullptr, nullptr);
+    EngineLoop whole({32, no_skip, 100'000});
+    whole.add(other);
+    CHECK(whole.run(nothing_more, 501) == 1024);
+  }
+}
+
 TEST_CASE("a machine with work left and nothing to come is stuck at once") {
   RelayCell cell({3}, nullptr, nullptr);
   cell.never_finishes = true;

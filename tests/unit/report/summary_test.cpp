@@ -106,6 +106,12 @@ TEST_CASE("the progress line extrapolates the time left") {
   CHECK(progress_line("render", 1, 4, 2.0, {}) ==
         " render [######..................]  25 %  2.0 s  ETA 6.0 s");
   CHECK(progress_line("render", 4, 4, 2.0, {}) == " render [########################] 100 %  2.0 s");
+  // A launch that gets nowhere still shows that it runs, and what it is.
+  CHECK(progress_line("endless.comp of mine", 0, 4, 2.0, {},
+                      {.cycles = 123'000'000, .instructions = 7'000'000}) ==
+        " endless.comp [........]   0 %  2.0 s  123.00 M cycles  3.50 M instr/s");
+  CHECK(progress_line("SHIP", 1, 4, 2.0, {}, {.cycles = 0, .instructions = 3000}) ==
+        " SHIP [##......]  25 %  2.0 s  ETA 6.0 s  2 k instr/s");
 }
 
 }  // namespace
