@@ -216,6 +216,8 @@ void RunDirectory::write_run(const RunInfo& info) const {
                               {"what", fault.what},
                               {"launch_id", fault.launch_id},
                               {"count", fault.count}});
+  for (const auto& [file, found] : info.not_finite)
+    json["not_finite"][file] = {{"pixels", found.pixels}, {"x", found.x}, {"y", found.y}};
   if (!info.saved.empty()) json["saved"] = info.saved;
   written_.erase("run.json");  // A file cannot hold its own sum.
   json["files"] = json_of(written_);

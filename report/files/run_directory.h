@@ -13,6 +13,7 @@
 #include "report/files/file_list.h"
 #include "report/files/folder_lock.h"
 #include "report/picture/image_files.h"
+#include "report/picture/not_finite.h"
 
 namespace glint::report {
 
@@ -62,6 +63,7 @@ struct RunInfo {
   double wall_seconds = 0;
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
+  std::vector<std::pair<std::string, NotFinite>> not_finite;  // pictures with pixels that are not finite
   std::vector<std::string> saved;  // files that a pipeline or a kernel was asked to keep
   std::optional<PartInfo> part;
   int exit = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/run_record.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -109,6 +110,23 @@ std::vector<double> RunRecord::values(const std::string& pattern) const {
   std::vector<double> out;
   for (const auto& [path, value] : stats_)
     if (path_matches(pattern, path)) out.push_back(value);
+  return out;
+}
+
+std::vector<std::pair<std::string, double>> RunRecord::parts(const std::string& pattern) const {
+  std::vector<std::pair<std::string, double>> out;
+  for (const auto& [path, value] : stats_) {
+    const size_t colons = path.find("::");
+    if (colons == std::string::npos || !path_matches(pattern, std::string_view(path).substr(0, colons)))
+      continue;
+    const std::string part = path.substr(colons + 2);
+    const auto same =
+        std::find_if(out.begin(), out.end(), [&](const auto& one) { return one.first == part; });
+    if (same == out.end())
+      out.emplace_back(part, value);
+    else
+      same->second += value;
+  }
   return out;
 }
 

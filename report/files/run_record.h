@@ -26,6 +26,8 @@ class RunRecord {
 
   // Returns the values of all statistics whose path matches (path_matches()), or none when none does.
   std::vector<double> values(const std::string& pattern) const;
+  // Returns the parts of all breakdowns whose path matches, each summed over them, in order of appearance.
+  std::vector<std::pair<std::string, double>> parts(const std::string& pattern) const;
   // Return a number of run.json by its dotted path ("scene.triangles"), or of the configuration ("rt.warps").
   std::optional<double> fact(const std::string& name) const { return find(facts_, name); }
   std::optional<double> config(const std::string& key) const { return find(config_, key); }

@@ -157,6 +157,16 @@ class Bench(BenchTest):
         self.assertEqual(sorted(runs("--resume", "--set", "core.warps=8")), ["SHIP_SH", "WKND_SH"])
         self.assertEqual(sorted(runs()), ["SHIP_SH", "WKND_SH"])
 
+    def test_runs_of_a_bench_note_what_its_options_ask_for(self):
+        notes = ["--profile", "--sample", "500", "--heat", "--trace", "--trace-window", "100:2000"]
+        self.glint(0, "bench", "SHIP_SH", *SMALL, "--out", "out", *notes)
+        self.glint(0, "run", "SHIP_SH", *SMALL, "--out", "alone", *notes)
+        for name in ("profile.csv", "source.json", "series.csv", "heat/maps.json", "trace.json.gz"):
+            self.assertEqual((self.folder / "out/SHIP_SH" / name).read_bytes(), (self.folder / "alone" / name).read_bytes(), name)
+        self.assertIn("1 of them complete", self.glint(0, "bench", "SHIP_SH", *SMALL, "--out", "out", *notes, "--resume").stdout)
+        self.assertIn("0 of them complete", self.glint(0, "bench", "SHIP_SH", *SMALL, "--out", "out", "--profile", "--resume").stdout)
+        self.assertIn("the functional machine has none", self.glint(2, "bench", "SHIP_SH", "--mode", "functional", "--profile", "--out", "other").stderr)
+
     def test_a_workload_that_fails_does_not_stop_the_others_and_the_exit_status_says_so(self):
         self.glint(0, "run", "SHIP_SH", *SMALL, "--out", "out/SHIP_SH")
         (self.folder / "out/SHIP_SH/stats.csv").unlink()

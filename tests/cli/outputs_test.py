@@ -73,6 +73,21 @@ class Outputs(GlintTest):
         self.assertEqual((self.folder / "page/page.html").read_text(), "before")
         self.assertEqual(self.left("page"), ["page.html"])
 
+    def test_pixels_that_are_not_finite_are_counted_and_the_first_is_named(self):
+        self.write("p/picture.comp", "#version 460\nlayout(local_size_x = 8, local_size_y = 4) in;\nlayout(set = 0, binding = 0, rgba32f) uniform image2D picture;\n"
+                   "void main() {\n  ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n  vec4 colour = vec4(1e38, 1e38, 1e38, 1);\n"
+                   "  if (at.y == 2 && at.x >= 5) colour.g = intBitsToFloat(at.x == 6 ? 0x7fc00000 : 0x7f800000);\n"
+                   "  if (at == ivec2(1, 3)) colour.b = -intBitsToFloat(0x7f800000);\n  imageStore(picture, at, colour);\n}\n")
+        self.write("p/p.toml", '[compute]\nshader = "picture.comp"\n[launch]\ngroups = [1, 1]\n[[image]]\nname = "picture"\nset = 0\nbinding = 0\n'
+                   'size = [8, 4]\nsave = "picture.pfm"\n')
+        for mode in ("functional", "timing"):
+            said = self.ok("run", "p/p.toml", "--mode", mode, "--out", "out").stderr
+            self.assertIn("warning: picture.pfm: 4 of 32 pixels are not finite; the first at x 5, y 2 from the top left: 1e+38 inf 1e+38", said)
+            record = json.loads((self.folder / "out/run.json").read_text())
+            self.assertEqual(record["not_finite"], {"picture.pfm": {"pixels": 4, "x": 5, "y": 2}})
+        self.ok(*RUN, "--out", "run")
+        self.assertNotIn("not_finite", json.loads((self.folder / "run/run.json").read_text()))
+
     def test_output_goes_through_a_link_to_the_file_that_it_names(self):
         self.write("there/isa.txt", "before")
         (self.folder / "link").symlink_to("there/isa.txt")

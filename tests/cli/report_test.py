@@ -196,6 +196,37 @@ class Compare(ReportTest):
         self.expect(1, ["failed: cycles<"], "compare", was, now, "--fail-on", "ipc<-99%", "--fail-on", f"cycles<{change + 0.1:.3f}%")
         self.assertIn("are equal", self.glint("compare", was, was).stdout)
 
+    def test_compare_lists_keys_that_differ_and_what_cycles_were_spent_on(self):
+        done = self.glint("run", "WKND", "--shader", "pt", *SMALL, "--set", "rt.box.latency=40", "--set", "core.issue=lrr", "--out", "keys")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = self.glint("compare", self.runs["wknd"], "keys").stdout
+        _, keys, slots, rays = text.split("\n\n")
+        rows = [line.split() for line in keys.splitlines()[1:]]
+        self.assertEqual([row[0] for row in rows], ["core.issue", "rt.box.latency"])
+        self.assertEqual((rows[0][2], rows[1][2:]), ("lrr", ["40", "cycle"]))
+        for part, pattern in ((slots, "gpu.core[*].issue_slots"), (rays, "gpu.rt_unit[*].rt.cycles")):
+            shares = [self.shares(run, pattern) for run in (self.runs["wknd"], "keys")]
+            told = [line.split() for line in part.splitlines()[1:]]
+            self.assertEqual({row[0] for row in told}, {name for name in shares[0] if abs(shares[0][name] - shares[1][name]) >= 0.5e-4})
+            for name, before, _, after, _, points, _ in told:
+                for value, right in ((before, shares[0][name]), (after, shares[1][name]), (points, shares[1][name] - shares[0][name])):
+                    self.assertAlmostEqual(float(value), 100 * right, delta=0.0051)
+            moved = [abs(float(row[5])) for row in told]
+            self.assertEqual(moved, sorted(moved, reverse=True))
+        same = self.glint("compare", self.runs["wknd"], self.runs["wknd"]).stdout
+        self.assertNotIn("\n\n", same)
+        self.assertIn("issued", self.glint("compare", self.runs["wknd"], self.runs["wknd"], "--all").stdout)
+
+    def shares(self, run, pattern):
+        """Returns the share of each part of a breakdown, summed over all units."""
+        sums = {}
+        with open(self.folder / run / "stats.csv", newline="") as file:
+            for row in csv.DictReader(file):
+                path, _, part = row["path"].partition("::")
+                if part and re.sub(r"\[\d+\]", "[*]", path) == pattern:
+                    sums[part] = sums.get(part, 0) + float(row["value"])
+        return {part: value / sum(sums.values()) for part, value in sums.items()}
+
     def test_compare_refuses_what_it_cannot_read(self):
         run = self.runs["wknd"]
         self.expect(2, ["METRIC<-2%"], "compare", run, run, "--fail-on", "ipc")

@@ -8,6 +8,7 @@
 #include "apps/glint/bench/process_pool.h"
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/session.h"
+#include "pipeline/run_profile.h"
 #include "scenes/camera.h"
 
 namespace glint::app {
@@ -20,6 +21,7 @@ struct BenchOptions {
   uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors
   double memory = 0;                    // GB that all processes may take together; 0: what is available
   bool resume = false;
+  pipeline::Observation observe;  // what each run notes
 };
 
 struct BenchTask {

@@ -15,6 +15,7 @@
 #include "apps/glint/bench/view.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/frame_options.h"
+#include "apps/glint/options/observe_options.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
@@ -261,6 +262,7 @@ void add_bench(Command app, Session& session) {
       .capture_default_str();
   command.add_option("--size", options->size, "Image size in pixels").type_name("WxH").capture_default_str();
   add_frame_options(command, options->frame);
+  add_observe_options(command, options->observe);
   command.callback([&session, options] {
     session.action = [&session, options] { return Bench(session, *options).run(); };
   });

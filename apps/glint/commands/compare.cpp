@@ -8,9 +8,15 @@
 
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
+#include "report/files/file_list.h"
+#include "report/metrics/compare_causes.h"
 
 namespace glint::app {
 namespace {
+
+std::string config_of(const std::string& directory) {
+  return report::ListedFiles::of_run(directory).need("config.toml");
+}
 
 Exit compare(const std::string& before, const std::string& after, const std::vector<std::string>& fail_on,
              bool all) {
@@ -19,7 +25,9 @@ Exit compare(const std::string& before, const std::string& after, const std::vec
   const report::RunRecord was = report::RunRecord::read(before), is = report::RunRecord::read(after);
   const std::vector<report::Change> changes = report::changes(was, is);
   tell_of_files({before, after});
-  write_output("", report::changes_text(changes, all) + report::uncompared_text(was, is));
+  write_output("", report::changes_text(changes, all) + report::uncompared_text(was, is) +
+                       report::changed_keys_text(config_of(before), config_of(after)) +
+                       report::changed_stalls_text(was, is, all));
   Exit exit = Exit::Ok;
   for (const report::Condition& condition : conditions) {
     if (!report::holds(condition, changes)) continue;

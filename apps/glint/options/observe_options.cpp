@@ -123,6 +123,20 @@ void add_observe_options(Command command, pipeline::Observation& observe) {
       .needs(trace);
 }
 
+std::vector<std::string> observe_arguments(const pipeline::Observation& observe) {
+  std::vector<std::string> out;
+  if (observe.profile) out.push_back("--profile");
+  if (observe.sample) out.push_back(fmt::format("--sample={}", observe.sample));
+  if (observe.heat) out.push_back("--heat");
+  if (!observe.trace.wanted) return out;
+  out.push_back("--trace");
+  out.push_back(fmt::format("--trace-limit={}", observe.trace.limit));
+  const std::string end = observe.trace.end == kNever ? "" : std::to_string(observe.trace.end);
+  if (observe.trace.begin > 0 || !end.empty())
+    out.push_back(fmt::format("--trace-window={}:{}", observe.trace.begin, end));
+  return out;
+}
+
 bool observes(const pipeline::Observation& observe) {
   return observe.profile || observe.sample || observe.heat || observe.trace.wanted;
 }

@@ -16,6 +16,9 @@ void add_observe_options(Command command, pipeline::Observation& observe);
 // Throws UserError when an option that needs cycles was given for the functional machine, which has none.
 void check_observation(const pipeline::Observation& observe, bool timing);
 
+// Returns the options of `glint run` that ask for what `observe` says.
+std::vector<std::string> observe_arguments(const pipeline::Observation& observe);
+
 // Returns whether anything was asked for.
 bool observes(const pipeline::Observation& observe);
 

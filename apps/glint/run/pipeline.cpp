@@ -14,6 +14,7 @@
 #include "apps/glint/run/outputs.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pipeline/description/defaults.h"
+#include "pipeline/description/pictures.h"
 #include "pipeline/pipeline_world.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
@@ -66,17 +67,23 @@ void check_saves(const pipeline::PipelineDescription& d) {
 }
 
 // Writes what the file asks for. Returns lines for the summary.
-std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory) {
+std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory,
+                              report::RunInfo& info) {
   std::vector<std::string> lines;
   const pipeline::PipelineDescription& d = world.description();
-  for (size_t i = 0; i < d.images.size(); ++i)
+  for (size_t i = 0; i < d.images.size(); ++i) {
+    if (d.images[i].saves.empty()) continue;
+    const exec::ImageView& view = world.image(i);
+    const uint64_t bytes = view.bytes_before_level(1);
+    const std::byte* const texels = world.memory().find(view.base, bytes);
     for (const pipeline::Save& save : d.images[i].saves) {
-      const exec::ImageView& view = world.image(i);
-      const uint64_t bytes = view.bytes_before_level(1);
-      directory.write(save.file,
-                      image_file(save.file, view, {world.memory().find(view.base, bytes), size_t(bytes)}));
+      directory.write(save.file, image_file(save.file, view, {texels, size_t(bytes)}));
       lines.push_back(fmt::format("{:<10} {}", d.images[i].name, directory.path_of(save.file)));
     }
+    const std::vector<float> floats = pipeline::texels_as_floats(view, texels);
+    note_not_finite(d.images[i].saves[0].file, {view.width, view.height * view.depth * view.layers, floats},
+                    info);
+  }
   for (size_t i = 0; i < d.buffers.size(); ++i) {
     const pipeline::BufferDescription& b = d.buffers[i];
     for (const pipeline::Save& save : b.saves) {
@@ -164,7 +171,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics());
-        files = keep(world, directory);
+        files = keep(world, directory, info);
         files.push_back("statistics " + directory.path_of("stats.txt"));
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));

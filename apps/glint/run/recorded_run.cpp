@@ -140,6 +140,13 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
   }
 }
 
+void note_not_finite(const std::string& file, const report::ImageView& image, report::RunInfo& info) {
+  const std::optional<report::NotFinite> found = report::not_finite(image);
+  if (!found) return;
+  info.not_finite.emplace_back(file, *found);
+  fmt::print(stderr, "warning: {}: {}\n", file, report::text_of(*found, image));
+}
+
 Exit print_result(const Session& session, bool json, const pipeline::RenderJob& job,
                   const pipeline::RenderResult& result, const report::RunInfo& info, const std::string& title,
                   std::vector<std::string> files) {

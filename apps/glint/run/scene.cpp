@@ -108,7 +108,9 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     return rendered;
   };
   const auto keep = [&](const pipeline::RenderResult& rendered) {
-    directory.write_image({rendered.width, rendered.height, rendered.rgba});
+    const report::ImageView image{rendered.width, rendered.height, rendered.rgba};
+    directory.write_image(image);
+    note_not_finite("image.pfm", image, info);
     directory.write_stats(rendered.statistics());
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));

@@ -1,0 +1,26 @@
+// Finds pixels of a picture that are not numbers or infinite.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "report/picture/image_files.h"
+
+namespace glint::report {
+
+// Counts the pixels with a colour that is not finite, and holds the first of them, row by row from the top.
+struct NotFinite {
+  uint64_t pixels = 0;
+  uint32_t x = 0, y = 0;  // from the top left
+  std::array<float, 3> rgb{};
+};
+
+// Returns nothing when all pixels are finite.
+std::optional<NotFinite> not_finite(const ImageView& image);
+
+// Returns text such as "3 of 4 096 pixels are not finite; the first at x 3, y 4 from the top left: nan 0 0".
+std::string text_of(const NotFinite& found, const ImageView& image);
+
+}  // namespace glint::report
