@@ -53,7 +53,7 @@ class Numbers(PythonTest):
 
     def test_compare_lists_the_changes_of_the_command_in_its_order(self):
         other = self.glint.run("SHIP_SH", out=self.folder / "slow", set={"memory.l1.size": 16384}, **SMALL)
-        printed = [line.split()[0] for line in self.command("compare", self.ship.directory, other.directory).splitlines()]
+        printed = [line.split()[0] for line in self.command("compare", self.ship.directory, other.directory).split("\n\n")[0].splitlines()]
         mine = self.glint.compare(self.ship, other)
         self.assertGreater(len(mine), 10)
         self.assertEqual([change.metric for change in mine], [name for name in printed if name in self.glint.metrics()])
