@@ -30,7 +30,20 @@ constexpr std::string_view kKeyMetrics[] = {
 std::string title_of(const Json& run) {
   const Json& facts = run["run"];
   const std::string scene = facts["scene"].value("name", ""), shader = facts.value("shader", "");
-  return shader.empty() || shader == scene ? scene : scene + " " + shader;
+  return (shader.empty() || shader == scene ? scene : scene + " " + shader) +
+         (facts.contains("partial") ? ", partial" : "");
+}
+
+// Says which runs were ended early, because their figures stand for a part of the launch.
+std::string partial_runs(const Json& runs) {
+  std::string out;
+  for (const Json& run : runs)
+    if (run["run"].contains("partial"))
+      out += fmt::format(
+          "<p class=\"note\"><strong>{} is partial</strong>: {}. All its figures are those up to "
+          "there.</p>\n",
+          escaped(run["directory"].get<std::string>()), escaped(run["run"].value("message", "")));
+  return out;
 }
 
 // Returns the folder of a run: "ship8" of "out/ship8/".
@@ -172,7 +185,7 @@ std::string section(const char* id, const char* title, const char* lead, const s
 
 // Returns the sections that can be read without script. The script adds its figures.
 std::string static_sections(const Json& data) {
-  std::string out = suite_sections(data);
+  std::string out = partial_runs(data["runs"]) + suite_sections(data);
   if (data["runs"].empty()) return out;
   return out +
          section("configuration", "Configuration", config_lead(data["runs"]).c_str(),

@@ -154,6 +154,9 @@ class Early(GlintTest):
                 done = self.glint(*reader)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertIn(f"note: out is partial: the launch was ended early at cycle {part['cycles']}", done.stderr)
+        page = (self.folder / "out/report.html").read_text()
+        self.assertIn("<title>SHIP sh, partial", page)
+        self.assertIn(f"out is partial</strong>: the launch was ended early at cycle {part['cycles']}", page)
 
     def test_a_partial_run_is_the_same_at_any_number_of_threads_and_without_skipping(self):
         files = []
