@@ -67,6 +67,23 @@ std::string uncompared_text(const RunRecord& before, const RunRecord& after) {
   return line(was, is, "A") + line(is, was, "B");
 }
 
+std::string different_work(const RunRecord& before, const RunRecord& after) {
+  constexpr std::string_view kFacts[] = {"scene.name", "scene.hash",       "shader",      "width",
+                                         "height",     "samples",          "seed",        "rays.bounces",
+                                         "mode",       "rays.shadow_rays", "rays.ao_rays"};
+  std::string out;
+  for (const std::string_view fact : kFacts) {
+    const auto value = [&](const RunRecord& run) {
+      const std::optional<double> number = run.fact(std::string(fact));
+      const std::string text = number ? fmt::format("{}", *number) : run.text(std::string(fact));
+      return text.empty() ? "nothing" : text;
+    };
+    if (const std::string was = value(before), is = value(after); was != is)
+      out += fmt::format("{}{} is {} in A and {} in B", out.empty() ? "" : "; ", fact, was, is);
+  }
+  return out;
+}
+
 Condition parse_condition(const std::string& text) {
   const size_t sign = text.find_first_of("<>");
   const std::string note = "expected METRIC<-2% or METRIC>5%: a change in percent";

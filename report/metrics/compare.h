@@ -24,6 +24,10 @@ std::vector<Change> changes(const RunRecord& before, const RunRecord& after);
 // Names the metrics that only one of the runs has, A or B. Returns "" when both have the same.
 std::string uncompared_text(const RunRecord& before, const RunRecord& after);
 
+// Says in which facts of run.json the runs differ that make their numbers those of different work: what was
+// launched, how large, with which seed, on which machine. Returns "" when there is none.
+std::string different_work(const RunRecord& before, const RunRecord& after);
+
 // Holds a condition such as "METRIC<-2%" or "METRIC>5%". It is met when the metric changed by less or more
 // than this percentage of its value before.
 struct Condition {

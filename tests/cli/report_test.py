@@ -227,6 +227,44 @@ class Compare(ReportTest):
                     sums[part] = sums.get(part, 0) + float(row["value"])
         return {part: value / sum(sums.values()) for part, value in sums.items()}
 
+    def test_compare_says_that_runs_did_different_work(self):
+        done = self.glint("run", "WKND", "--shader", "ao", *SMALL, "--seed", "7", "--out", "ambient")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = self.glint("compare", self.runs["wknd"], "ambient")
+        self.assertEqual(said.returncode, 0, said.stderr)
+        for part in ("different work", "shader is pt in A and ao in B", "seed is 1 in A and 7 in B"):
+            self.assertIn(part, said.stderr)
+
+    def test_compare_takes_folders_of_benches(self):
+        for name, more in (("one", ["WKND_PT", "WKND_AO"]), ("two", ["WKND_PT", "--set", "core.warps=4"])):
+            done = self.glint("bench", *more, "--size", "8x8", "--spp", "1", "--out", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        said = self.glint("compare", "one", "two", "--fail-on", "cycles>1000%")
+        self.assertEqual(said.returncode, 0, said.stderr)
+        self.assertTrue(said.stdout.startswith("== WKND_PT\n"), said.stdout)
+        self.assertNotIn("WKND_AO", said.stdout)
+        self.assertIn("1 of the 2 and 1 workloads are in both", said.stderr)
+        self.expect(1, ["failed: WKND_PT: occupancy>0%"], "compare", "one", "two", "--fail-on", "occupancy>0%")
+
+    def test_imgdiff_compares_what_two_pipelines_saved(self):
+        fill = ("#version 460\nlayout(local_size_x = 8) in;\nlayout(set = 0, binding = 0, rgba32f) uniform image2D a;\n"
+                "layout(set = 0, binding = 1, rgba32f) uniform image2D b;\n"
+                "void main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy); imageStore(a, at, vec4(0.5)); imageStore(b, at, vec4(VALUE)); }\n")
+        images = "".join(f'[[image]]\nname = "{name}"\nset = 0\nbinding = {i}\nsize = [8, 4]\nformat = "rgba32f"\nsave = "{name}.pfm"\n'
+                         for i, name in enumerate("ab"))
+        self.write("fill.comp", fill)
+        self.write("fill.toml", '[compute]\nshader = "fill.comp"\n[launch]\ngroups = [1, 4]\n' + images)
+        for name, value in (("first", "0.25"), ("second", "0.5")):
+            done = self.glint("run", "fill.toml", "-D", f"VALUE={value}", "--mode", "functional", "--out", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        said = self.glint("imgdiff", "first", "second", "--min-psnr", "20")
+        self.assertEqual(said.returncode, 1, said.stderr)
+        a, b = said.stdout.split("== b.pfm\n")
+        self.assertTrue(a.startswith("== a.pfm\n"), a)
+        self.assertRegex(a, r"largest +0 ")
+        self.assertRegex(b, r"largest +0\.25 ")
+        self.expect(2, ["--out takes one picture"], "imgdiff", "first", "second", "-o", "d.png")
+
     def test_compare_refuses_what_it_cannot_read(self):
         run = self.runs["wknd"]
         self.expect(2, ["METRIC<-2%"], "compare", run, run, "--fail-on", "ipc")

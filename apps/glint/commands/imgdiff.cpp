@@ -5,10 +5,14 @@
 #include <fmt/format.h>
 #include <limits>
 #include <memory>
+#include <set>
+#include <system_error>
+#include <vector>
 
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
+#include "base/diagnostics.h"
 #include "report/files/file_list.h"
 #include "report/files/run_record.h"
 #include "report/picture/flip.h"
@@ -23,19 +27,61 @@ struct ImgdiffOptions {
   double min_psnr = 0, max_flip = 1, pixels_per_degree = report::kPixelsPerDegree;
 };
 
-constexpr const char* kPicture = "image.pfm";  // the picture of a run with all digits
+constexpr const char* kPicture = "image.pfm";  // the picture of a scene's run, with all digits
 
-// Returns the path of a picture. A run directory stands for its picture, which must be as the run left it.
+// Holds the paths of two pictures that are compared. `name` is set where a pipeline saved several.
+struct PicturePair {
+  std::string a, b, name;
+};
+
+// Returns the pictures of a run by name. Each must be as the run left it. The run of a scene stands for its
+// picture with all digits, and the run of a pipeline for the pictures that it saved.
+std::set<std::string> pictures_of(const std::string& directory) {
+  report::check_finished(directory);
+  const report::ListedFiles files = report::ListedFiles::of_run(directory);
+  std::set<std::string> names;
+  if (files.read(kPicture)) return {kPicture};
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string(), ending = entry.path().extension().string();
+    if ((ending == ".pfm" || ending == ".png") && files.read(name)) names.insert(name);
+  }
+  tell_of_files({directory});
+  return names;
+}
+
+// Returns the path of a picture. A directory without run.json may have a picture, too.
 std::string picture_of(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_directory(path, error)) return path;
   const std::string picture = path + "/" + kPicture;
   if (!std::filesystem::exists(path + "/run.json", error) && std::filesystem::exists(picture, error))
     return picture;
-  report::check_finished(path);
-  report::ListedFiles::of_run(path).read(kPicture);
-  tell_of_files({path});
-  return picture;
+  const std::set<std::string> names = pictures_of(path);
+  if (names.size() != 1)
+    throw UserError({path}, fmt::format("this run has {} pictures, and one is compared", names.size()),
+                    "name the picture, or the directories of two runs");
+  return path + "/" + *names.begin();
+}
+
+// Returns what to compare: two pictures, or all that two runs have in common.
+std::vector<PicturePair> pairs_of(const ImgdiffOptions& options) {
+  const auto is_run = [](const std::string& path) {
+    std::error_code error;
+    return std::filesystem::exists(path + "/run.json", error);
+  };
+  if (!is_run(options.a) || !is_run(options.b)) return {{picture_of(options.a), picture_of(options.b), ""}};
+  std::vector<PicturePair> pairs;
+  const std::set<std::string> others = pictures_of(options.b);
+  for (const std::string& name : pictures_of(options.a))
+    if (others.contains(name)) pairs.push_back({options.a + "/" + name, options.b + "/" + name, name});
+  if (pairs.size() == 1) pairs[0].name.clear();
+  if (pairs.empty())
+    throw UserError({}, fmt::format("'{}' and '{}' have no picture in common", options.a, options.b),
+                    "a pipeline keeps one with save = \"NAME.pfm\" or \"NAME.png\" under [[image]]");
+  if (pairs.size() > 1 && !options.out.empty())
+    throw UserError({}, fmt::format("--out takes one picture, and the runs have {} in common", pairs.size()),
+                    "name the two files instead of the directories");
+  return pairs;
 }
 
 std::string png_of(const report::Picture& picture) {
@@ -69,7 +115,7 @@ std::string measures(const report::Picture& a, const report::ImageDifference& d,
 }
 
 // Says where pixels are not finite, because no measure shows it.
-void tell_not_finite(const ImgdiffOptions& options, const report::Picture& a, const report::Picture& b,
+void tell_not_finite(const PicturePair& pair, const report::Picture& a, const report::Picture& b,
                      const report::ImageDifference& d) {
   if (d.pixels_not_finite > 0)
     fmt::print(stderr, "warning: not finite in both pictures, and the same: {} pixels; they count as equal\n",
@@ -85,7 +131,7 @@ void tell_not_finite(const ImgdiffOptions& options, const report::Picture& a, co
              "note: with them there is no MSE, PSNR, SSIM or FLIP; -o draws them magenta\n",
              report::with_thousands(d.pixels_beyond_measure),
              report::with_thousands(uint64_t(a.width) * a.height), first % a.width, first / a.width, pixel(a),
-             options.a, pixel(b), options.b);
+             pair.a, pixel(b), pair.b);
 }
 
 report::Picture drawn(const ImgdiffOptions& options, const report::Picture& a, const report::Picture& b,
@@ -96,14 +142,14 @@ report::Picture drawn(const ImgdiffOptions& options, const report::Picture& a, c
   return out;
 }
 
-Exit imgdiff(const ImgdiffOptions& options) {
-  const report::Picture a = report::read_picture(picture_of(options.a)),
-                        b = report::read_picture(picture_of(options.b));
+Exit compare_pair(const ImgdiffOptions& options, const PicturePair& pair) {
+  const report::Picture a = report::read_picture(pair.a), b = report::read_picture(pair.b);
   const report::ImageDifference d = report::difference(a, b);
   const report::Flip flip = report::flip(a, b, options.pixels_per_degree);
-  write_output("", measures(a, d, flip, options.pixels_per_degree));
+  const std::string title = pair.name.empty() ? "" : fmt::format("== {}\n", pair.name);
+  write_output("", title + measures(a, d, flip, options.pixels_per_degree));
   if (!options.out.empty()) write_output(options.out, png_of(drawn(options, a, b, d.largest, flip)));
-  tell_not_finite(options, a, b, d);
+  tell_not_finite(pair, a, b, d);
   if (d.psnr < options.min_psnr) fmt::print(stderr, "failed: PSNR below {} dB\n", options.min_psnr);
   if (flip.mean > options.max_flip)
     fmt::print(stderr, "failed: FLIP {:.6f} is above {}\n", flip.mean, options.max_flip);
@@ -112,14 +158,23 @@ Exit imgdiff(const ImgdiffOptions& options) {
              : Exit::Ok;
 }
 
+Exit imgdiff(const ImgdiffOptions& options) {
+  Exit exit = Exit::Ok;
+  for (const PicturePair& pair : pairs_of(options))
+    if (compare_pair(options, pair) != Exit::Ok) exit = Exit::Failure;
+  return exit;
+}
+
 }  // namespace
 
 void add_imgdiff(Command app, Session& session) {
   auto options = std::make_shared<ImgdiffOptions>();
   Command command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
   command
-      .add_option("A", options->a,
-                  "First picture: a PFM or PNG file, or a run directory, which stands for its image.pfm")
+      .add_option(
+          "A", options->a,
+          "First picture: a PFM or PNG file, or a run directory, which stands for its image.pfm or for the "
+          "pictures that its pipeline saved")
       .required();
   command.add_option("B", options->b, "Second picture").required();
   command.add_option("-o,--out", options->out, "PNG file to write the difference to; --metric selects which");
