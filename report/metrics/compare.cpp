@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "base/diagnostics.h"
 

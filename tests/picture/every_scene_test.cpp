@@ -66,8 +66,8 @@ void check_scene(const std::string& scene, const std::string& assets) {
       CHECK(found[i].pixels >= 0.998);
       CHECK(std::abs(found[i].ray_ratio - 1) < 1e-3);
     } else if (cases[i].workload == Workload::PathTracing && cases[i].bounces > 2) {
-      // What begins in the last bit of a hit grows with each bounce. In FOX 12 % of the pixels differ, so that
-      // the number of rays, of which there are a few thousand, differs by up to 1.6 %.
+      // What begins in the last bit of a hit grows with each bounce. In FOX 12 % of the pixels differ, so
+      // that the number of rays, of which there are a few thousand, differs by up to 1.6 %.
       CHECK(found[i].mean_error <= 0.01);
       CHECK(std::abs(found[i].ray_ratio - 1) <= 0.02);
     } else {
