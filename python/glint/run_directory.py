@@ -62,7 +62,7 @@ class Run:
         if not partial:
             if "mode" not in self.info:
                 raise SchemaError(f"{record}: there is no 'mode': the file is damaged")
-            self.file("stats.json", "every run that ends well")
+            self.file(self._stats_file, "every run that ends well")
             if not self._files.is_known:
                 warnings.warn("an earlier version of Glint wrote the run without the lengths and sums of its files, so damage to them cannot be noticed", stacklevel=2)
 
@@ -86,11 +86,17 @@ class Run:
         """Returns the name of the preset or configuration file."""
         return str(self.info.get("config.name", ""))
 
+    @property
+    def _stats_file(self) -> str:
+        return "stats.csv" if self.info.get("statistics") == "compact" else "stats.json"
+
     @functools.cached_property
     def stats(self) -> Stats:
-        """Returns all statistics by dotted path."""
-        path = self.file("stats.json", "every run that ends well")
+        """Returns all statistics by dotted path. A run with `--stats compact` has totals alone: "gpu.core[*].instructions"."""
+        path = self.file(self._stats_file, "every run that ends well")
         try:
+            if path.suffix == ".csv":
+                return Stats.from_totals(Table.read(path, needs=("path", "value", "unit"), whole=True))
             return Stats.from_tree(read_json(path))
         except SchemaError as error:
             raise SchemaError(str(error) if str(path) in str(error) else f"{path}: {error}") from error
@@ -139,7 +145,7 @@ class Run:
         """Returns the run over time, with a row per interval (docs/profiling.md)."""
         path = self.file("series.csv", "`glint run --sample CYCLES`")
         table = Table.read(path, needs=("cycle", "ipc"), whole=True)
-        ends, whole = table["cycle"][-1] if len(table) else 0, self.directory / "stats.json"
+        ends, whole = table["cycle"][-1] if len(table) else 0, self.directory / self._stats_file
         last = max([self.cycles, *self.stats.values("gpu.attributed_cycles")]) if whole.is_file() else 0
         if not isinstance(ends, (int, float)) or ends < last:
             raise SchemaError(f"{path}: the series ends at cycle {ends} and the run at {last}: the file is damaged or was cut short")

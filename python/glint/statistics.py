@@ -10,6 +10,7 @@ from typing import Any, Iterator
 
 from .errors import SchemaError, UnknownName
 from .patterns import compiled, near
+from .table import Table
 
 Number = int | float
 
@@ -57,6 +58,23 @@ class Stats(Mapping[str, Any]):
         _gather(tree, "", stats)
         if not stats:
             raise SchemaError("stats.json holds no statistics: it was not written by this version of Glint")
+        return cls(stats)
+
+    @classmethod
+    def from_totals(cls, table: Table) -> Stats:
+        """Makes statistics from stats.csv of a run with `--stats compact`: totals, in whose paths `[*]` stands for all instances of a unit."""
+        stats: dict[str, Stat] = {}
+        for path, value, unit in zip(table["path"], table["value"], table["unit"]):
+            name, separator, part = path.partition("::")
+            if not _is_value(value):
+                raise SchemaError(f"'{path}' is {value!r:.40}, which is not a number: the file is damaged")
+            if separator:
+                known = stats.setdefault(name, Stat(name, {}, unit, "")).value
+                if not isinstance(known, dict):
+                    raise SchemaError(f"'{name}' is a number and has parts: the file is damaged")
+                known[part] = value
+            else:
+                stats[path] = Stat(path, value, unit, "")
         return cls(stats)
 
     def __getitem__(self, path: str) -> Any:

@@ -13,7 +13,9 @@
 #include "base/diagnostics.h"
 #include "base/regular_file.h"
 #include "report/files/config_file.h"
+#include "report/files/csv_field.h"
 #include "report/files/run_facts.h"
+#include "report/files/stat_rows.h"
 #include "report/files/stat_writer.h"
 
 namespace glint::report {
@@ -168,7 +170,13 @@ void RunDirectory::write_image(const ImageView& image) const {
   write("image.pfm", pfm_bytes(image));
 }
 
-void RunDirectory::write_stats(const stats::Group& root) const {
+void RunDirectory::write_stats(const stats::Group& root, bool compact) const {
+  if (compact) {
+    std::string out = "path,value,unit,doc\n";
+    for (const StatRow& row : stat_totals(root))
+      out += fmt::format("{},{},{},\n", csv_field(row.path), row.value, csv_field(row.unit));
+    return write("stats.csv", out);
+  }
   for (const std::string& format : Registry<StatWriter>::names())
     write("stats." + format, Registry<StatWriter>::instance().entry(format).make_default({})->write(root));
 }
@@ -209,6 +217,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   json["started"] = info.started;
   json["wall_seconds"] = info.wall_seconds;
   json["on_fault"] = info.on_fault;
+  if (info.compact) json["statistics"] = "compact";
   if (!info.faults.empty()) json["faults"] = nlohmann::ordered_json::array();
   for (const FaultInfo& fault : info.faults)
     json["faults"].push_back({{"kind", fault.kind},

@@ -65,6 +65,7 @@ struct RunInfo {
   std::vector<FaultInfo> faults;
   std::vector<std::pair<std::string, NotFinite>> not_finite;  // pictures with pixels that are not finite
   std::vector<std::string> saved;  // files that a pipeline or a kernel was asked to keep
+  bool compact = false;            // The statistics are totals over units (stat_totals()).
   std::optional<PartInfo> part;
   int exit = 0;
   std::string message;  // why exit is not 0
@@ -98,8 +99,9 @@ class RunDirectory {
   // Removes the results that this run or an earlier one has left. config.toml, run.json and files of others
   // stay.
   void remove_results() const;
-  void write_image(const ImageView& image) const;    // image.png, image.pfm
-  void write_stats(const stats::Group& root) const;  // stats.<format> of every registered format
+  void write_image(const ImageView& image) const;  // image.png, image.pfm
+  // Writes stats.<format> of every registered format, or, for RunInfo::compact, stats.csv with totals alone.
+  void write_stats(const stats::Group& root, bool compact = false) const;
   void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml
   void write_run(const RunInfo& info) const;                                                // run.json
   const FileList& written() const { return written_; }  // what this object has written and not removed

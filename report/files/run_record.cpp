@@ -55,6 +55,15 @@ void check_finished(const std::string& directory) {
   RunRecord().add_finished(directory);
 }
 
+void check_full_statistics(const std::string& directory, const std::string& reader) {
+  RunRecord record;
+  record.add_finished(directory);
+  if (record.text("statistics") == "compact")
+    throw UserError(
+        {directory}, fmt::format("the run has compact statistics, and {} needs those of every unit", reader),
+        "run it again without --stats compact; `compare` and `stats --format metrics` can read it");
+}
+
 RunRecord RunRecord::read(const std::string& directory) {
   RunRecord record;
   record.add_finished(directory);

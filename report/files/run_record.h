@@ -13,6 +13,9 @@ namespace glint::report {
 // last case the error has that run's message. A run that was ended early has results, and is accepted.
 void check_finished(const std::string& directory);
 
+// Throws UserError when a run has totals alone (`--stats compact`). `reader` says who needs more: "a report".
+void check_full_statistics(const std::string& directory, const std::string& reader);
+
 class RunRecord {
  public:
   // Reads a run. Throws UserError when a file is absent or is not what a run writes.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/stat_rows.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -95,6 +97,48 @@ class NameVisitor final : public PathVisitor {
   std::set<std::string> seen_;
 };
 
+class TotalVisitor final : public PathVisitor {
+ public:
+  void visit(const stats::Counter& stat) override { total(stat, "").sum += stat.value(); }
+  void visit(const stats::Ratio& stat) override {
+    if (path_of(stat).find('[') == std::string::npos) largest(stat, stat.value());
+  }
+  void visit(const stats::Value& stat) override { largest(stat, stat.value()); }
+  void visit(const stats::Histogram&) override {}
+  void visit(const stats::BreakdownBase& stat) override {
+    for (const auto& [name, count] : stat.parts()) total(stat, "::" + std::string(name)).sum += count;
+  }
+
+  std::vector<StatRow> rows() const {
+    std::vector<StatRow> out;
+    for (const Total& total : totals_)
+      out.push_back({total.path,
+                     total.largest ? fmt::format("{}", *total.largest) : fmt::format("{}", total.sum),
+                     total.unit, ""});
+    return out;
+  }
+
+ private:
+  struct Total {
+    std::string path, unit;
+    uint64_t sum = 0;
+    std::optional<double> largest;  // set for a computed value
+  };
+  Total& total(const stats::Stat& stat, const std::string& part) {
+    std::string path = without_numbers(path_of(stat)) + part;
+    const auto [found, is_new] = index_.emplace(path, totals_.size());
+    if (is_new) totals_.push_back({std::move(path), std::string(stat.unit()), 0, std::nullopt});
+    return totals_[found->second];
+  }
+  void largest(const stats::Stat& stat, double value) {
+    std::optional<double>& at = total(stat, "").largest;
+    at = at ? std::max(*at, value) : value;
+  }
+
+  std::vector<Total> totals_;
+  std::map<std::string, size_t> index_;
+};
+
 class SumVisitor final : public PathVisitor {
  public:
   explicit SumVisitor(const std::string& pattern) : pattern_(pattern) {}
@@ -129,6 +173,12 @@ std::vector<StatRow> stat_rows(const stats::Group& root) {
   RowVisitor visitor;
   root.accept(visitor);
   return std::move(visitor.rows);
+}
+
+std::vector<StatRow> stat_totals(const stats::Group& root) {
+  TotalVisitor visitor;
+  root.accept(visitor);
+  return visitor.rows();
 }
 
 std::vector<StatRow> stat_names(const stats::Group& root) {

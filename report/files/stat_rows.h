@@ -20,6 +20,12 @@ struct StatRow {
 // Returns the rows depth first, in order of declaration. The root's own name is the first part of every path.
 std::vector<StatRow> stat_rows(const stats::Group& root);
 
+// Returns totals over the instances of units: counters and parts of breakdowns are added up, and of computed
+// values the largest is taken. An instance's number in brackets reads [*], which patterns match as they match
+// numbers. Histograms, and quotients of units with numbers, are left out. Rows have no doc, and are in order
+// of first appearance.
+std::vector<StatRow> stat_totals(const stats::Group& root);
+
 // Returns every statistic once, without values, in order of first appearance. An instance's number in
 // brackets reads [*]. Parts and bins are left out, and an empty histogram is included.
 std::vector<StatRow> stat_names(const stats::Group& root);

@@ -121,6 +121,7 @@ void add_timeline(const PageRun& run, const ListedFiles& files, Json& out) {
 Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   const std::string& directory = run.directory;
   Json out = {{"directory", directory}, {"run", facts_of(directory)}};
+  check_full_statistics(directory, "a report");
   const ListedFiles files = ListedFiles::of_run(directory);
   out["run"].erase("files");  // The page has their contents.
   out["stats"] = page_stats(json_object(files.need("stats.json"), directory + "/stats.json"), stat_docs);

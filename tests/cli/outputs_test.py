@@ -88,6 +88,27 @@ class Outputs(GlintTest):
         self.ok(*RUN, "--out", "run")
         self.assertNotIn("not_finite", json.loads((self.folder / "run/run.json").read_text()))
 
+    def test_compact_statistics_are_totals_from_which_all_metrics_follow_in_at_most_60_kb(self):
+        for what in (["SHIP_PT", "--config", "mobile"], ["WKND_SH", "--config", "desktop"], ["WKND_AO", "--config", "h200"], ["WKND_PT", "--mode", "functional"]):
+            with self.subTest(what=what):
+                self.ok("run", *what, "--size", "16x16", "--spp", "1", "--out", "full")
+                done = self.ok("run", *what, "--size", "16x16", "--spp", "1", "--stats", "compact", "--out", "compact")
+                self.assertIn("compact/stats.csv", done.stdout)
+                self.assertLessEqual(self.size("compact", "stats.csv"), 60_000)
+                self.assertEqual([name for name in self.left("compact") if name.startswith("stats")], ["stats.csv"])
+                self.assertEqual(*(self.metrics(folder) for folder in ("full", "compact")))
+                if "--mode" not in what:
+                    self.assertIn("are equal", self.ok("compare", "full", "compact").stdout.replace("Configuration", ""))
+                    self.expect(2, ["compact statistics, and a report needs those of every unit", "--stats compact"], "report", "compact")
+                self.expect(2, ["compact statistics, and the format txt needs"], "stats", "compact")
+
+    def size(self, *names):
+        return self.folder.joinpath(*names).stat().st_size
+
+    def metrics(self, folder):
+        """Returns the metrics of a run as they are printed, without the speed of the host."""
+        return [" ".join(line.split()) for line in self.ok("stats", folder, "--format", "metrics").stdout.splitlines() if not line.startswith("sim_rate")]
+
     def test_output_goes_through_a_link_to_the_file_that_it_names(self):
         self.write("there/isa.txt", "before")
         (self.folder / "link").symlink_to("there/isa.txt")

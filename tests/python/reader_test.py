@@ -51,6 +51,15 @@ class Numbers(PythonTest):
         self.assertEqual(self.ship.info["scene.name"], "SHIP")
         self.assertEqual(self.ship.workload, "SHIP_SH")
 
+    def test_a_run_with_compact_statistics_has_the_same_metrics_and_totals(self):
+        compact = self.glint.run("SHIP_SH", out=self.folder / "compact", sample=1000, options=["--stats", "compact"], **SMALL)
+        same = [name for name in self.glint.metrics() if name != "sim_rate"]
+        self.assertEqual([compact.metrics[name] for name in same], [self.ship.metrics[name] for name in same])
+        self.assertEqual(compact.cycles, self.ship.cycles)
+        self.assertEqual(compact.stats["gpu.core[*].instructions"], self.ship.stats.sum("gpu.core[*].instructions"))
+        self.assertEqual(compact.stats.parts("core.issue_slots"), self.ship.stats.parts("core.issue_slots"))
+        self.assertEqual(len(compact.series), len(self.ship.series))
+
     def test_compare_lists_the_changes_of_the_command_in_its_order(self):
         other = self.glint.run("SHIP_SH", out=self.folder / "slow", set={"memory.l1.size": 16384}, **SMALL)
         printed = [line.split()[0] for line in self.command("compare", self.ship.directory, other.directory).split("\n\n")[0].splitlines()]

@@ -53,12 +53,13 @@ std::vector<std::string> frame_options(const scenes::RenderParams& frame) {
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const std::string text = fmt::format(
-      "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{}",
+      "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{} "
+      "stats {}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size,
       fmt::join(frame_options(options.frame), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
       report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
-      identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "));
+      identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "), options.stats);
   return fmt::format("{:016x}", report::fnv1a(text));
 }
 
@@ -91,6 +92,7 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
                                   "--out=" + task.directory};
   for (const Plugin& plugin : session.plugins) out.push_back("--plugin=" + plugin.path);
   for (const std::string& option : frame_options(options.frame)) out.push_back(option);
+  out.push_back("--stats=" + options.stats);
   for (const std::string& option : observe_arguments(options.observe)) out.push_back(option);
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);

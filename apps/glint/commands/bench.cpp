@@ -16,6 +16,7 @@
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/launch_options.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
@@ -263,6 +264,7 @@ void add_bench(Command app, Session& session) {
   command.add_option("--size", options->size, "Image size in pixels").type_name("WxH").capture_default_str();
   add_frame_options(command, options->frame);
   add_observe_options(command, options->observe);
+  add_stats_option(command, options->stats);
   command.callback([&session, options] {
     session.action = [&session, options] { return Bench(session, *options).run(); };
   });

@@ -20,6 +20,7 @@ Exit stats(const std::string& run, const std::string& format) {
     write_output("", report::vulkan_sim_text(report::RunRecord::read(run)));
   } else {
     report::check_finished(run);
+    if (format != "csv") report::check_full_statistics(run, "the format " + format);
     write_output("", report::ListedFiles::of_run(run).need("stats." + format));
   }
   tell_of_files({run});

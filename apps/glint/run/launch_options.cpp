@@ -52,6 +52,16 @@ void add_machine_options(Command command, LaunchOptions& options) {
 
 }  // namespace
 
+void add_stats_option(Command command, std::string& stats) {
+  command
+      .add_option(
+          "--stats", stats,
+          "Selects the statistics to write: full has every unit, in three formats; compact has totals "
+          "over units in stats.csv, at most 60 kB, from which all metrics follow")
+      .one_of({"full", "compact"})
+      .capture_default_str();
+}
+
 void add_launch_options(Command command, LaunchOptions& options) {
   add_machine_options(command, options);
   command
@@ -59,6 +69,7 @@ void add_launch_options(Command command, LaunchOptions& options) {
                   "New or empty directory, or that of an earlier run, to write the run to (default: "
                   "out/SCENE_SHADER-MODE)")
       .type_name("DIR");
+  add_stats_option(command, options.stats);
   command.add_flag("--json", options.json, "Print the statistics as JSON instead of the summary");
   command
       .add_option("--printf-limit", options.print_limit,

@@ -22,12 +22,14 @@ struct LaunchOptions {
   std::vector<std::string> settings;              // KEY=VALUE
   uint64_t max_instructions = 0;                  // limit of a warp; 0: the limit of the configuration
   uint64_t max_cycles = 0;                        // limit of the launch; 0: none
-  bool json = false;                              // print statistics as JSON instead of the summary
-  bool no_skip = false;                           // step every cycle
-  uint32_t threads = 0;                           // threads of the host; 0: all processors
-  std::string on_fault_name = "stop";             // "stop" or "warn"
-  exec::OnFault on_fault = exec::OnFault::Stop;   // the value of on_fault_name
-  uint64_t print_limit = 1000;                    // messages of debugPrintfEXT to show
+  std::string stats = "full";                     // "full" or "compact"
+  bool compact() const { return stats == "compact"; }
+  bool json = false;                             // print statistics as JSON instead of the summary
+  bool no_skip = false;                          // step every cycle
+  uint32_t threads = 0;                          // threads of the host; 0: all processors
+  std::string on_fault_name = "stop";            // "stop" or "warn"
+  exec::OnFault on_fault = exec::OnFault::Stop;  // the value of on_fault_name
+  uint64_t print_limit = 1000;                   // messages of debugPrintfEXT to show
   ShaderOptions shaders;
   pipeline::Observation observe;
 };
@@ -36,6 +38,8 @@ struct LaunchOptions {
 // parsing.
 void add_launch_options(Command command, LaunchOptions& options);
 void finish_launch_options(const Command& command, LaunchOptions& options);
+
+void add_stats_option(Command command, std::string& stats);  // adds --stats
 
 // Throws UserError when the functional machine is given a limit of cycles.
 void check_max_cycles(const LaunchOptions& options, bool timing);

@@ -161,6 +161,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
                                                      : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   info.on_fault = exec::name_of(options.on_fault);
+  info.compact = options.compact();
   begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(
@@ -170,9 +171,9 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
                                       options.observe);
       },
       [&](const pipeline::RenderResult& ended) {
-        directory.write_stats(ended.statistics());
+        directory.write_stats(ended.statistics(), options.compact());
         files = keep(world, directory, info);
-        files.push_back("statistics " + directory.path_of("stats.txt"));
+        files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
       },

@@ -134,6 +134,7 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
                                                      : options.out);
   report::RunInfo info = describe_run(session, options, job.gpu, name, text);
   info.on_fault = exec::name_of(options.on_fault);
+  info.compact = options.compact();
   for (const LaunchArgument& argument : launch.arguments)
     if (argument.is_buffer && argument.save) info.saved.push_back(argument.name + ".bin");
   begin_directory(directory, info, job.gpu, title);
@@ -145,9 +146,9 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
                                    options.threads, watch, options.observe);
       },
       [&](const pipeline::RenderResult& ended) {
-        directory.write_stats(ended.statistics());
+        directory.write_stats(ended.statistics(), options.compact());
         files = keep_buffers(launched, launch, directory);
-        files.push_back("statistics " + directory.path_of("stats.txt"));
+        files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
       });

@@ -92,6 +92,7 @@ report::RunInfo describe_run(const Session& session, const SceneOptions& options
   info.shader = options.shader;
   info.frame = scenes::values_of(job.frame);
   info.on_fault = exec::name_of(launch.on_fault);
+  info.compact = launch.compact();
   return info;
 }
 
@@ -111,7 +112,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     const report::ImageView image{rendered.width, rendered.height, rendered.rgba};
     directory.write_image(image);
     note_not_finite("image.pfm", image, info);
-    directory.write_stats(rendered.statistics());
+    directory.write_stats(rendered.statistics(), info.compact);
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));
   };
@@ -137,8 +138,9 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
   report::RunInfo info = describe_run(session, options, launch, job);
   const std::string title = title_of(job, options, launch);
   begin_directory(directory, info, job.gpu, title);
-  std::vector<std::string> files = {"picture    " + directory.path_of("image.png"),
-                                    "statistics " + directory.path_of("stats.txt")};
+  std::vector<std::string> files = {
+      "picture    " + directory.path_of("image.png"),
+      "statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt")};
   const pipeline::RenderResult result = render_into(session, directory, info, job, launch.max_cycles, files);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   return print_result(session, launch.json, job, result, info, title, std::move(files));
