@@ -39,13 +39,13 @@ struct PicturePair {
 std::set<std::string> pictures_of(const std::string& directory) {
   report::check_finished(directory);
   const report::ListedFiles files = report::ListedFiles::of_run(directory);
+  tell_of_files({directory});
   std::set<std::string> names;
   if (files.read(kPicture)) return {kPicture};
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     const std::string name = entry.path().filename().string(), ending = entry.path().extension().string();
     if ((ending == ".pfm" || ending == ".png") && files.read(name)) names.insert(name);
   }
-  tell_of_files({directory});
   return names;
 }
 
