@@ -128,9 +128,7 @@ uint64_t check_once(const isa::OpRow& row, const Access& access, int32_t displac
     }
   }
   const Outcome outcome = lab.run(sources, enabled, before);
-  CHECK(outcome.fault == "");
-  CHECK(outcome.results == results);
-  CHECK((outcome.after == expected));
+  CHECK(difference(outcome, results, expected) == "");
   return outcome.lanes;
 }
 

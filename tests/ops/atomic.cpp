@@ -160,9 +160,7 @@ uint64_t check_once(const isa::OpRow& row, const Atomic& op, uint64_t enabled, u
     for (size_t w = 0; w < results.size(); ++w) results[w][t] = uint32_t(old >> (32 * w));
   }
   const Outcome outcome = lab.run(sources, enabled, before);
-  CHECK(outcome.fault == "");
-  CHECK(outcome.results == results);
-  CHECK((outcome.after == expected));
+  CHECK(difference(outcome, results, expected) == "");
   return outcome.lanes;
 }
 

@@ -87,6 +87,9 @@ class OpLab {
   Address inputs_ = 0, outputs_ = 0, global_ = 0, shared_ = 0, local_ = 0;
 };
 
+// Returns where a run that should have ended well differs from what it should have left, or "".
+std::string difference(const Outcome& outcome, const std::vector<Column>& results, const Spaces& after);
+
 // Returns the modifiers of an op's name: "ld.global.v2.b32" has {"ld", "global", "v2", "b32"}.
 std::vector<std::string_view> parts_of(std::string_view name);
 

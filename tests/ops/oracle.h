@@ -16,6 +16,7 @@ using Oracle = uint64_t (*)(const isa::OpRow& row);
 uint64_t check_access(const isa::OpRow& row);
 uint64_t check_atomic(const isa::OpRow& row);
 uint64_t check_control(const isa::OpRow& row);
+uint64_t check_surface(const isa::OpRow& row);
 
 // Names an oracle by its file, which is what the op table's families name.
 struct OracleFile {
@@ -26,6 +27,7 @@ inline constexpr OracleFile kOracles[] = {
     {"tests/ops/access.cpp", &check_access},
     {"tests/ops/atomic.cpp", &check_atomic},
     {"tests/ops/control.cpp", &check_control},
+    {"tests/ops/surface.cpp", &check_surface},
 };
 
 }  // namespace glint::test

@@ -112,7 +112,7 @@ constexpr auto rmw_type() {
 
 // Returns the new value in memory. Model: the sum of floats is rounded to nearest even and keeps subnormals.
 template <Rmw kRmw>
-constexpr uint64_t apply(uint64_t old, uint64_t operand, uint64_t swap) {
+uint64_t apply(uint64_t old, uint64_t operand, uint64_t swap) {
   const auto a = uint32_t(old), b = uint32_t(operand);
   const auto sa = int32_t(a), sb = int32_t(b);
   switch (kRmw) {
@@ -120,7 +120,7 @@ constexpr uint64_t apply(uint64_t old, uint64_t operand, uint64_t swap) {
     case Rmw::AddS32:
       return uint32_t(a + b);
     case Rmw::AddF32:
-      return __builtin_bit_cast(uint32_t, __builtin_bit_cast(float, a) + __builtin_bit_cast(float, b));
+      return float_bits(canonical(float_of(a) + float_of(b)));
     case Rmw::MinU32:
       return a < b ? a : b;
     case Rmw::MinS32:
