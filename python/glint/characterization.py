@@ -6,7 +6,9 @@ from __future__ import annotations
 import functools
 import pathlib
 
+from .documents import read_json
 from .errors import MissingFile, SchemaError
+from .file_list import ListedFiles
 from .table import Table
 
 
@@ -22,12 +24,16 @@ class Characterization:
             self.directory = self.directory / "characterization"
         if not (self.directory / "scores.csv").is_file():
             raise MissingFile(f"{self.directory}: there is no scores.csv; `glint characterize` writes it (docs/characterization.md)")
+        record = self.directory / "characterization.json"
+        listed = read_json(record).get("files") if record.is_file() else None
+        self._files = ListedFiles(self.directory, "characterization.json", listed, "run `glint characterize` again")
 
     def table(self, name: str, *needs: str) -> Table:
         """Returns a table by its file's name without .csv. Raises MissingFile and SchemaError."""
         path = self.directory / f"{name}.csv"
         if not path.is_file():
             raise MissingFile(f"{self.directory}: there is no {name}.csv")
+        self._files.check(path.name)
         return Table.read(path, needs=needs)
 
     @functools.cached_property

@@ -41,8 +41,8 @@ class ListedFiles:
         data = path.read_bytes()
         found = f"{zlib.crc32(data):08x}"
         if len(data) != length:
-            how = "cut short" if len(data) < length else "written to after the run"
-            raise SchemaError(f"{path}: the file has {len(data)} bytes, and {self.index} says {length}: it was {how}: {self.advice}")
+            how = "it was cut short" if len(data) < length else "something was added to it"
+            raise SchemaError(f"{path}: the file has {len(data)} bytes, and {self.index} says {length}: {how}: {self.advice}")
         if found != wanted:
             raise SchemaError(f"{path}: the contents of the file have CRC-32 {found}, and {self.index} says {wanted}: it was changed: {self.advice}")
         self._whole.add(name)

@@ -23,8 +23,8 @@ std::string hex_of(uint32_t crc32) {
 // Says how the file differs from what the list has of it.
 std::string difference_of(const FileSum& is, const FileSum& was, const std::string& index) {
   if (is.bytes != was.bytes)
-    return fmt::format("the file has {} bytes, and {} says {}: it was {}", is.bytes, index, was.bytes,
-                       is.bytes < was.bytes ? "cut short" : "written to after the run");
+    return fmt::format("the file has {} bytes, and {} says {}: {}", is.bytes, index, was.bytes,
+                       is.bytes < was.bytes ? "it was cut short" : "something was added to it");
   return fmt::format("the contents of the file have CRC-32 {}, and {} says {}: it was changed",
                      hex_of(is.crc32), index, hex_of(was.crc32));
 }

@@ -71,7 +71,7 @@ class Runs(Whole):
     def test_every_reader_refuses_a_file_that_was_cut_or_changed_and_says_what_differs(self):
         for name, readers in READERS.items():
             for change, parts in ((cut, ["bytes, and run.json says", "it was cut short"]), (flipped, ["CRC-32", "it was changed"]),
-                                  (lambda data: data + b"\n", ["it was written to after the run"])):
+                                  (lambda data: data + b"\n", ["something was added to it"])):
                 self.damaged(name, change)
                 for reader in readers:
                     with self.subTest(file=name, reader=reader):

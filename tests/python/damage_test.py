@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import struct
+import subprocess
 import warnings
 import zlib
 
@@ -56,7 +57,27 @@ class Damaged(PythonTest):
                            ("profile.csv", lambda run: run.profile), ("profile.folded", lambda run: run.folded)):
             self.refused(file, cut, read, rf"{file}: the file has \d+ bytes, and run.json says \d+: it was cut short: run it again", listed=True)
             self.refused(file, changed, read, rf"{file}: the contents .* it was changed: run it again", listed=True)
-            self.refused(file, lambda data: data + b"\n", read, rf"{file}: .* written to after the run", listed=True)
+            self.refused(file, lambda data: data + b"\n", read, rf"{file}: .* something was added to it", listed=True)
+
+    def test_tables_of_a_bench_and_of_a_characterisation_that_were_cut_are_refused(self):
+        table = self.folder / "metrics.csv"
+        table.write_text("workload,config,cycles,a,b\n" + "".join(f"w{i},c,{i},{i * i},{7 % (i + 1)}\n" for i in range(1, 7)))
+        there = self.folder / "suite"
+        self.command("characterize", table, "--clusters", "2", "--metrics", "2", "-o", there)
+        for name in ("scores", "leaves", "linkage", "subset", "kiviat", "eigenvalues"):
+            path = there / f"{name}.csv"
+            whole = path.read_bytes()
+            self.assertGreater(len(self.glint.Characterization(there).table(name)), 0)
+            path.write_bytes(whole[:whole.rindex(b"\n", 0, -1) + 1])
+            self.assertRaisesRegex(self.glint.SchemaError, f"{name}.csv.*characterization.json says .* cut short: run `glint characterize` again",
+                                   self.glint.Characterization(there).table, name)
+            path.write_bytes(whole)
+        bench = self.folder / "bench"
+        subprocess.run([python_case.GLINT, "bench", "WKND_SH", "WKND_AO", "--size", "8x8", "--spp", "1", "--out", bench], check=True, capture_output=True)
+        self.assertEqual(len(self.glint.Bench(bench).table), 2)
+        whole = (bench / "metrics.csv").read_bytes()
+        (bench / "metrics.csv").write_bytes(whole[:whole.rindex(b"\n", 0, -1) + 1])
+        self.assertRaisesRegex(self.glint.SchemaError, "metrics.csv.*bench.json says .* cut short: remove metrics.csv", self.glint.Bench, bench)
 
     def test_a_list_of_files_that_is_none_is_refused(self):
         for wrong in (7, [], {"stats.json": 7}, {"stats.json": {"bytes": 1}}):

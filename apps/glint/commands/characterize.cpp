@@ -13,6 +13,7 @@
 #include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"
 #include "report/characterize/characterization_json.h"
+#include "report/files/file_list.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 
@@ -71,11 +72,15 @@ Exit characterize(const CharacterizeOptions& options) {
   if (!report::is_unused_folder(out) && !fs::exists(directory.path_of(kDocument)))
     throw UserError({out}, "the folder holds files that are not of a characterisation",
                     "give --out a new or empty folder, or that of an earlier characterisation");
+  const auto files = report::characterization_files(result);
+  report::FileList list;
+  for (const auto& [name, content] : files) list[name] = report::sum_of(content);
+  nlohmann::ordered_json document =
+      report::characterization_json(result, {.name = options.input, .version = GLINT_VERSION});
+  document["files"] = report::json_of(list);
   // The document comes first, because it marks the folder.
-  directory.write(
-      kDocument,
-      report::characterization_json(result, {.name = options.input, .version = GLINT_VERSION}).dump() + "\n");
-  for (const auto& [name, content] : report::characterization_files(result)) directory.write(name, content);
+  directory.write(kDocument, document.dump() + "\n");
+  for (const auto& [name, content] : files) directory.write(name, content);
   write_output("", report::characterization_text(result));
   for (const std::string& other : options.against) print_speed_ups(csv, metrics, other, result);
   print_output("\n{}\n`glint report {}` draws it\n", directory.path_of(kDocument),

@@ -54,7 +54,7 @@ TEST_CASE("a file is read when it is as listed, and refused when its length or c
                                                   "8: it was cut short") &&
                                              Contains("run it again"));
   folder.write("a.csv", "one\ntwo\nthree\n");
-  CHECK_THROWS_WITH(files.read("a.csv"), Contains("written to after the run"));
+  CHECK_THROWS_WITH(files.read("a.csv"), Contains("something was added to it"));
   folder.write("a.csv", "one\n2wo\n");
   CHECK_THROWS_WITH(files.read("a.csv"), Contains("CRC-32") && Contains("it was changed"));
 }
