@@ -16,7 +16,9 @@ using Oracle = uint64_t (*)(const isa::OpRow& row);
 uint64_t check_access(const isa::OpRow& row);
 uint64_t check_atomic(const isa::OpRow& row);
 uint64_t check_control(const isa::OpRow& row);
+uint64_t check_image_query(const isa::OpRow& row);
 uint64_t check_surface(const isa::OpRow& row);
+uint64_t check_texture(const isa::OpRow& row);
 
 // Names an oracle by its file, which is what the op table's families name.
 struct OracleFile {
@@ -24,10 +26,9 @@ struct OracleFile {
   Oracle check;
 };
 inline constexpr OracleFile kOracles[] = {
-    {"tests/ops/access.cpp", &check_access},
-    {"tests/ops/atomic.cpp", &check_atomic},
-    {"tests/ops/control.cpp", &check_control},
-    {"tests/ops/surface.cpp", &check_surface},
+    {"tests/ops/access.cpp", &check_access},   {"tests/ops/atomic.cpp", &check_atomic},
+    {"tests/ops/control.cpp", &check_control}, {"tests/ops/image_query.cpp", &check_image_query},
+    {"tests/ops/surface.cpp", &check_surface}, {"tests/ops/texture.cpp", &check_texture},
 };
 
 }  // namespace glint::test
