@@ -66,6 +66,7 @@ std::string span_text(const Image& image, uint32_t first, uint32_t last) {
     high = std::max(high, image.lines[pc].line);
   }
   const uint32_t entry = image.shaders[image.shader_of[first]].entry;
+  if (low == 0 && first == last) return fmt::format("the loop of instruction {}", first - entry);
   if (low == 0) return fmt::format("the loop of instructions {} to {}", first - entry, last - entry);
   return low == high ? fmt::format("the loop of line {}", low)
                      : fmt::format("the loop of lines {} to {}", low, high);

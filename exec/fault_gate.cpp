@@ -14,7 +14,8 @@ namespace glint::exec {
 Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, uint64_t instruction_budget) {
   const int lane = warp.simt.active ? std::countr_zero(warp.simt.active) : 0;
   const std::string loops = loops_around(*world.image, pc);
-  return {fmt::format("no end in sight: the warp has executed more than {} instructions{}{}",
+  return {fmt::format("no end in sight: the warp has executed more than {} instructions, and "
+                      "--max-instructions allows more{}{}",
                       instruction_budget, loops.empty() ? "" : "; ", loops),
           world.image->place_of(pc), launch_id(world, warp.warp_index, lane)};
 }
