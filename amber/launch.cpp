@@ -13,6 +13,7 @@
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/description/modules.h"
+#include "pipeline/launch_size.h"
 #include "pipeline/render.h"
 #include "pipeline/software_traversal.h"
 #include "pipeline/unbound.h"
@@ -129,6 +130,7 @@ void Launch::set_compute() {
                                 size[1], size[2], exec::kMaxBlockThreads));
   world_.raygen = 0;
   world_.local_bytes = pipeline::stack_bytes(image_, 1, 0);
+  pipeline::check_launch_size(command_.size, size, command_.where);
   exec::set_blocks(world_, command_.size, size, program.shared_bytes);
 }
 
@@ -170,6 +172,7 @@ pipeline::TableRegion Launch::region(const std::string& table, pipeline::TableIn
 }
 
 void Launch::set_ray_tracing() {
+  pipeline::check_launch_size(command_.size, {1, 1, 1}, command_.where);
   world_.launch_size = command_.size;
   pipeline::TableInput input;
   const std::vector<pipeline::TableRecord> raygen = records(command_.raygen, input);

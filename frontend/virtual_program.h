@@ -53,6 +53,11 @@ struct VirtualBlock {
   std::vector<BlockId> successors;  // all blocks that control may go to next
 };
 
+// The most bytes of variables that one thread may have. Source: CUDA C++ Programming Guide, Technical
+// Specifications per Compute Capability, "Maximum amount of local memory per thread" (512 KB for all of
+// them).
+inline constexpr uint64_t kMostLocalBytes = 512 * 1024;
+
 // The program is not in SSA form: phis have become moves. On every path, a definition reaches every use.
 struct VirtualProgram {
   std::string name;

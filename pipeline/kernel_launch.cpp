@@ -9,6 +9,7 @@
 #include "base/diagnostics.h"
 #include "exec/block.h"
 #include "isa/generic_address.h"
+#include "pipeline/launch_size.h"
 
 namespace glint::pipeline {
 
@@ -73,6 +74,7 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
       throw UserError({}, fmt::format("kernel '{}' takes blocks of at most {} threads (.maxntid), not {}",
                                       name, size(most), size(grid.block)));
   }
+  check_launch_size(grid.grid, grid.block, SourceLocation{name});
   exec::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
 }
 

@@ -14,6 +14,7 @@
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
 #include "pipeline/description/pictures.h"
+#include "pipeline/launch_size.h"
 #include "pipeline/software_traversal.h"
 
 namespace glint::pipeline {
@@ -75,6 +76,7 @@ void PipelineWorld::link(const GpuParams& gpu) {
 
 void PipelineWorld::set_launch() {
   if (description_.compute.empty()) {
+    check_launch_size(description_.launch, {1, 1, 1}, SourceLocation{description_.path});
     world.launch_size = description_.launch;
     return;
   }
@@ -85,6 +87,7 @@ void PipelineWorld::set_launch() {
     throw UserError(description_.compute_where,
                     fmt::format("'{}' has blocks of {} x {} x {} threads, and at most {} are possible",
                                 description_.compute, size[0], size[1], size[2], exec::kMaxBlockThreads));
+  check_launch_size(description_.launch, size, description_.compute_where);
   exec::set_blocks(world, description_.launch, size, program.shared_bytes);
 }
 

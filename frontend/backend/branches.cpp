@@ -12,7 +12,7 @@ namespace {
 
 class BranchCleaner {
  public:
-  BranchCleaner(Code& code, const Ops& ops) : code_(code), ops_(ops) {}
+  BranchCleaner(Code& code, const Ops& ops) : code_(code), ops_(ops), next_(code.size()) { forget_runs(); }
 
   void run() {
     clean();
@@ -38,9 +38,16 @@ class BranchCleaner {
     return !is_guarded(c) && isa::ends_block(effect);
   }
   bool falls_through(size_t block) const { return code_[block].empty() || !leaves(code_[block].back()); }
+  // Returns the first block from `block` on that has code. Runs of empty blocks are skipped at once the next
+  // time.
   size_t first_code(size_t block) const {
-    while (block < code_.size() && code_[block].empty()) ++block;
-    return block;
+    size_t end = block;
+    while (end < code_.size() && code_[end].empty()) end = next_[end];
+    while (block < end) block = std::exchange(next_[block], end);
+    return end;
+  }
+  void forget_runs() {
+    for (size_t b = 0; b < next_.size(); ++b) next_[b] = b + 1;
   }
 
   // Redirects a branch that leads to an unguarded branch to that branch's target. An endless ring of branches
@@ -115,6 +122,10 @@ class BranchCleaner {
   struct Edges {
     uint32_t branches = 0, ssys = 0;
     size_t from = 0;  // block of the last branch
+    void add(const Edges& more) {
+      branches += more.branches, ssys += more.ssys;
+      from = std::max(from, more.from);
+    }
   };
   std::vector<Edges> count_edges() const {
     std::vector<Edges> edges(code_.size() + 1);
@@ -149,14 +160,16 @@ class BranchCleaner {
   }
 
   bool drop_lone_joins() {
-    const std::vector<Edges> edges = count_edges();
+    std::vector<Edges> edges = count_edges();
     bool changed = false;
-    size_t before = code_.size();  // the previous block in the layout
-    for (size_t b = first_code(0); b < code_.size(); before = b, b = first_code(b + 1)) {
+    std::vector<size_t> before;  // the blocks with code up to here
+    for (size_t b = first_code(0); b < code_.size(); before.push_back(b), b = first_code(b + 1)) {
+      while (!before.empty() && code_[before.back()].empty()) before.pop_back();
       if (code_[b].front().inst.op != ops_.join || edges[b].ssys != 1) continue;
-      const bool falls_in = before < code_.size() && falls_through(before);
+      const bool falls_in = !before.empty() && falls_through(before.back());
       if (edges[b].branches + falls_in != 1) continue;
-      std::vector<Coded>& from = code_[falls_in ? before : edges[b].from];
+      const size_t source = falls_in ? before.back() : edges[b].from;
+      std::vector<Coded>& from = code_[source];
       const auto ssy = std::find_if(from.begin(), from.end(), [&](const Coded& c) {
         return c.inst.op == ops_.ssy && first_code(c.target) == b;
       });
@@ -166,8 +179,11 @@ class BranchCleaner {
       if (std::any_of(ssy + 1, from.end(), [&](const Coded& c) { return c.inst.op == ops_.ssy; })) continue;
       code_[b].erase(code_[b].begin());
       from.erase(ssy);
+      --edges[b].ssys;
       changed = true;
-      if (from.empty() || code_[b].empty()) break;  // The edges of this block now lead elsewhere.
+      // The edges of a block that has become empty lead to the next one.
+      for (size_t emptied : {std::max(source, b), std::min(source, b)})
+        if (code_[emptied].empty()) edges[first_code(emptied)].add(std::exchange(edges[emptied], {}));
     }
     return changed;
   }
@@ -218,11 +234,13 @@ class BranchCleaner {
     if (block + 1 >= code_.size() || !code_[block + 1].empty()) return kNoBlock;
     code_[block + 1].assign(code_[block].begin() + std::ptrdiff_t(length), code_[block].end());
     code_[block].resize(length);
+    forget_runs();
     return BlockId(block + 1);
   }
 
   Code& code_;
   const Ops& ops_;
+  mutable std::vector<size_t> next_;  // of an empty block: a later one, with only empty blocks between
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,11 +20,16 @@ using Instructions = std::vector<VirtualInst>;
 class Converter {
  public:
   Converter(VirtualProgram& program, const Ops& ops)
-      : program_(program), ops_(ops), predecessors_(program.blocks.size()), ssys_(program.blocks.size()) {
+      : program_(program),
+        ops_(ops),
+        predecessors_(program.blocks.size()),
+        ssys_(program.blocks.size()),
+        mentions_(program.registers.size()) {
     for (BlockId b = 0; b < program.blocks.size(); ++b) {
       for (BlockId next : program.blocks[b].successors) predecessors_[next].push_back(b);
       for (const VirtualInst& inst : program.blocks[b].code)
         if (is_real(inst) && inst.op == ops.ssy) ++ssys_[inst.target];
+      mention(program.blocks[b].code, 1);
     }
   }
 
@@ -93,7 +100,7 @@ class Converter {
     for (size_t m = 0; m < arm.size(); ++m) {
       if (!ops_.is_move(arm[m].op) || !is_register(arm[m].operands[1])) continue;
       const VirtualRegister to = arm[m].operands[0].reg, from = arm[m].operands[1].reg;
-      if (count(from) != 2) continue;  // It has one definition and this use.
+      if (mentions_[from] != 2) continue;  // It has one definition and this use.
       for (size_t d = m; d-- > 0;) {
         bool defines = false, touches = false;
         for_each_def(arm[d], [&](VirtualRegister r) {
@@ -115,16 +122,13 @@ class Converter {
     }
   }
 
-  // Counts how often the whole program mentions a register.
-  size_t count(VirtualRegister wanted) const {
-    size_t mentions = 0;
-    const auto visit = [&](VirtualRegister r) { mentions += r == wanted; };
-    for (const VirtualBlock& block : program_.blocks)
-      for (const VirtualInst& inst : block.code) {
-        for_each_def(inst, visit);
-        for_each_use(inst, visit);
-      }
-    return mentions;
+  // Adds to the number of times that the whole program mentions each register.
+  void mention(std::span<const VirtualInst> code, int times) {
+    const auto visit = [&](VirtualRegister r) { mentions_[r] += uint32_t(times); };
+    for (const VirtualInst& inst : code) {
+      for_each_def(inst, visit);
+      for_each_use(inst, visit);
+    }
   }
 
   bool convert(BlockId head) {
@@ -147,6 +151,9 @@ class Converter {
     VirtualBlock& block = program_.blocks[head];
     VirtualBlock& merge = program_.blocks[s.merge];
     Instructions selected = select_moves(taken, other, s);
+    for (BlockId gone : {s.taken, s.other})
+      if (gone != s.merge) mention(program_.blocks[gone].code, -1);
+    mention(std::span(block.code).subspan(s.branch), -1);
     block.code.resize(s.branch);
     block.code.erase(block.code.begin() + std::ptrdiff_t(s.ssy));
     if (may_run_first(taken, other)) {
@@ -159,7 +166,9 @@ class Converter {
     append(block.code, taken, s.condition, s.negate);
     append(block.code, other, s.condition, !s.negate);
     block.code.insert(block.code.end(), selected.begin(), selected.end());
-    block.code.insert(block.code.end(), merge.code.begin() + 1, merge.code.end());
+    mention(std::span(block.code).subspan(s.branch - 1), 1);
+    block.code.insert(block.code.end(), std::make_move_iterator(merge.code.begin() + 1),
+                      std::make_move_iterator(merge.code.end()));
     if (!ends(block.code)) {
       block.code.push_back(
           make_inst(ops_.bra, {}, block.code.empty() ? isa::Line{} : block.code.back().line));
@@ -235,6 +244,7 @@ class Converter {
   const Ops& ops_;
   std::vector<std::vector<BlockId>> predecessors_;
   std::vector<uint32_t> ssys_;
+  std::vector<uint32_t> mentions_;  // by register
 };
 
 }  // namespace

@@ -5,15 +5,20 @@
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
+#include <set>
+#include <string_view>
 
 #include "base/regular_file.h"
 #include "frontend/cache.h"
 #include "frontend/compile.h"
+#include "frontend/deep_stack.h"
 #include "frontend/glsl/includer.h"
 #include "frontend/glsl/messages.h"
 #include "frontend/glsl/newer_glsl.h"
+#include "frontend/glsl/token_count.h"
 #include "frontend/program_bytes.h"
 #include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/limits.h"
 #include "frontend/spirv/spirv.h"
 
 namespace glint::frontend {
@@ -94,6 +99,33 @@ std::string preamble(const GlslOptions& options) {
   return text;
 }
 
+// Adds a text and the files that it includes, each once.
+void add_tokens(TokenCount& count, Includer& includer, std::set<std::string>& known, const std::string& name,
+                std::string_view text, size_t depth) {
+  if (!known.insert(name).second) return;
+  for (const TokenCount::Header& header : count.add(name, text)) {
+    Includer::IncludeResult* found =
+        header.is_local ? includer.includeLocal(header.name.c_str(), name.c_str(), depth) : nullptr;
+    if (!found) found = includer.includeSystem(header.name.c_str(), name.c_str(), depth);
+    if (!found) continue;
+    if (!found->headerName.empty())
+      add_tokens(count, includer, known, found->headerName, {found->headerData, found->headerLength},
+                 depth + 1);
+    includer.releaseInclude(found);
+  }
+}
+
+// Refuses a shader that glslang would take too long to read. glslang expands macros without a limit.
+void check_tokens(const std::string& source, const std::string& before, const std::string& path,
+                  isa::Stage stage, const GlslOptions& options) {
+  TokenCount count;
+  Includer includer(options.include_dirs, stage, path);
+  std::set<std::string> known;
+  count.add(path, before);
+  add_tokens(count, includer, known, path, source, 1);
+  count.check();
+}
+
 constexpr int kDefaultGlslVersion = 460;  // the version that GL_EXT_ray_tracing needs
 
 std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, EShMessages messages,
@@ -110,6 +142,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
   words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
+  check_limits(words, path);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
   return words;
@@ -128,8 +161,10 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
   return glsl_text_to_spirv(*source, path, *stage, options);
 }
 
-std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage,
-                                         const GlslOptions& options) {
+namespace {
+
+std::vector<uint32_t> text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage,
+                                    const GlslOptions& options) {
   const std::string key = options.cache ? key_of(source, path, stage, options) : std::string();
   if (options.cache)
     if (std::optional<std::vector<uint32_t>> found = find_words(*options.cache, key))
@@ -145,6 +180,7 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   const char* name = path.c_str();
   shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
   const std::string before = preamble(options);
+  check_tokens(source, before, path, stage, options);
   shader.setPreamble(before.c_str());
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, kDefaultGlslVersion);
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
@@ -159,6 +195,13 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::s
   std::vector<uint32_t> words = generate(shader, language, messages, path, options);
   if (options.cache) store(*options.cache, key, includer.lookups(), words);
   return words;
+}
+
+}  // namespace
+
+std::vector<uint32_t> glsl_text_to_spirv(const std::string& source, const std::string& path, isa::Stage stage,
+                                         const GlslOptions& options) {
+  return with_deep_stack([&] { return text_to_spirv(source, path, stage, options); });
 }
 
 }  // namespace glint::frontend

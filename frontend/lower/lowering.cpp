@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
+#include "frontend/deep_stack.h"
 #include "frontend/glsl/debug_print.h"
 #include "frontend/lower/query_calls.h"
 #include "frontend/lower/typed.h"
@@ -356,9 +357,11 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
 
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
                    const std::string& entry_point) {
-  VirtualProgram program = lower_to_virtual(spirv, name, entry_point, options.contract);
-  if (options.queries_call) make_queries_calls(program);
-  return assemble(std::move(program), options);
+  return with_deep_stack([&] {
+    VirtualProgram program = lower_to_virtual(spirv, name, entry_point, options.contract);
+    if (options.queries_call) make_queries_calls(program);
+    return assemble(std::move(program), options);
+  });
 }
 
 }  // namespace glint::frontend

@@ -221,6 +221,10 @@ uint32_t ModuleLowering::local_offset(Id variable) {
   constexpr uint32_t kAlign = 16;  // lets one access move a vector of four words
   const uint32_t at = (program_.local_bytes + kAlign - 1) / kAlign * kAlign;
   program_.local_bytes = at + layout_.size(module_.type(type_of(variable)).element);
+  if (program_.local_bytes > kMostLocalBytes) {
+    unsupported(fmt::format("the variables take more than {} bytes of every thread", kMostLocalBytes));
+    program_.local_bytes = at;  // It cannot overflow, and more variables are looked at.
+  }
   const auto global = module_.variables.find(variable);
   if (global != module_.variables.end() && global->second.storage == spv::StorageClass::HitObjectAttributeNV)
     program_.local_bytes = at + 64;  // ho.attributes stores all 64 bytes (docs/abi.md).

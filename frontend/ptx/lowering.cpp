@@ -307,6 +307,9 @@ void KernelLowering::declare(const Declaration& d) {
     symbol.kind = Symbol::Kind::Variable;
     if (d.space == VariableSpace::Local) {
       symbol.address = aligned(program_.local_bytes, d.alignment());
+      if (symbol.address + d.bytes() > kMostLocalBytes)
+        return no_support(d.position, fmt::format("'{}': more than {} bytes of local memory of one thread",
+                                                  d.name, kMostLocalBytes));
       program_.local_bytes = uint32_t(aligned(symbol.address + d.bytes(), 4));
     } else if (d.space == VariableSpace::Shared && !d.is_extern) {
       symbol.address = shared_.at(&d);

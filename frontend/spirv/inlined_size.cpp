@@ -82,18 +82,19 @@ void count_copies(CallGraph& graph) {
 
 }  // namespace
 
-void check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& name) {
+uint64_t check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& name) {
   CallGraph graph = read(spirv);
   count_copies(graph);
-  uint64_t all = 0, most = 0;
+  uint64_t all = 0, most = 0, calls = 0;
   uint32_t largest = 0;
   for (const auto& [id, function] : graph.functions) {
     const uint64_t size =
         std::min(kMany, function.copies) * std::min<uint64_t>(function.instructions, 1u << 20);
     all = std::min(kMany, all + size);
+    calls = std::min(kMany, calls + function.copies * function.callees.size());
     if (size > most) most = size, largest = id;
   }
-  if (all <= kMostInlined) return;
+  if (all <= kMostInlined) return calls;
   const auto amount = [](uint64_t n) {
     return n >= kMany ? std::string("more than a million million") : fmt::format("{}", n);
   };

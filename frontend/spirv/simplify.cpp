@@ -9,13 +9,16 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "frontend/compile.h"
+#include "frontend/deep_stack.h"
 #include "frontend/glsl/debug_print.h"
 #include "frontend/spirv/by_reference.h"
 #include "frontend/spirv/inline_scopes.h"
 #include "frontend/spirv/inlined_size.h"
 #include "frontend/spirv/kept_loops.h"
+#include "frontend/spirv/limits.h"
 #include "frontend/spirv/module_repairs.h"
 #include "frontend/spirv/shared_blocks.h"
+#include "frontend/spirv/short_blocks.h"
 #include "frontend/spirv/spirv.h"
 #include "frontend/spirv/vendor_ray_tracing.h"
 #include "frontend/spirv/words.h"
@@ -134,12 +137,21 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
   return after.empty() ? output : std::vector<uint32_t>{};
 }
 
+// Choice: with more calls, inlined code does not name its calls. The optimiser looks at the marks of all
+// inlined calls whenever it removes a variable; 8,000 calls take it 12 s so, and 2,000 take it 0.7 s.
+constexpr uint64_t kMostMarkedCalls = 2000;
+
 // Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
 // names its calls.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                std::string* messages) {
-  const std::vector<uint32_t> input = with_plain_lines(with_kept_loops(with_known_prints(spirv)));
-  if (const std::optional<std::vector<uint32_t>> marked = with_inline_scopes(input)) {
+                                uint64_t calls, std::string* messages) {
+  // A block with few calls can become one with many, when the callees have calls in their turn.
+  const uint32_t calls_of_block = calls <= kMostMarkedCalls ? 64 : 1;
+  const std::vector<uint32_t> input =
+      with_plain_lines(with_kept_loops(with_known_prints(with_short_blocks(spirv, calls_of_block))));
+  const std::optional<std::vector<uint32_t>> marked =
+      calls <= kMostMarkedCalls ? with_inline_scopes(input) : std::nullopt;
+  if (marked) {
     // The first pass strips foreign sets, so it would strip the marks. A marked module does not need it,
     // because it has no other such sets.
     std::string of_marks;
@@ -169,23 +181,33 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
 
 }  // namespace
 
-std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
+namespace {
+
+std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string& name,
+                                 Diagnostics& warnings) {
+  check_limits(spirv, name);
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
-  check_inlined_size(spirv, name);
+  const uint64_t calls = check_inlined_size(spirv, name);
   std::string messages;
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
-    std::vector<uint32_t> output = optimised(spirv, *passes, &messages);
+    std::vector<uint32_t> output = optimised(spirv, *passes, calls, &messages);
     if (output.empty()) continue;
     if (!has_calls(output)) return output;
-    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, &messages);
+    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, calls, &messages);
     return again.empty() || has_calls(again) ? output : again;
   }
   warnings.warning({name, 0, 0},
                    "the SPIR-V optimiser failed and the module is used unoptimised: " + messages);
   return spirv;
+}
+
+}  // namespace
+
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
+  return with_deep_stack([&] { return simplified(std::move(spirv), name, warnings); });
 }
 
 }  // namespace glint::frontend

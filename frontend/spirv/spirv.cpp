@@ -5,16 +5,18 @@
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <map>
+#include <optional>
 #include <span>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv/unified1/spirv.hpp11>
 #include <string_view>
 
+#include "base/regular_file.h"
 #include "frontend/compile.h"
+#include "frontend/deep_stack.h"
 #include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/limits.h"
 #include "frontend/spirv/newer_capabilities.h"
 #include "frontend/spirv/words.h"
 
@@ -133,10 +135,12 @@ bool is_spirv_file(const std::string& path) {
   return ending == ".spv" || ending == ".spvasm";
 }
 
-std::vector<uint32_t> read_spirv(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+namespace {
+
+std::vector<uint32_t> read_words(const std::string& path) {
+  const std::optional<std::string> file = read_regular_file(path);
   if (!file) throw UserError({path, 0, 0}, "cannot read the shader");
+  const std::string& bytes = *file;
   std::vector<uint32_t> words(bytes.size() / 4);
   if (std::filesystem::path(path).extension() == ".spvasm") {
     words = assemble_spirv(bytes, path);
@@ -147,9 +151,16 @@ std::vector<uint32_t> read_spirv(const std::string& path) {
   }
   words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
+  check_limits(words, path);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "invalid SPIR-V\n" + invalid);
   return words;
+}
+
+}  // namespace
+
+std::vector<uint32_t> read_spirv(const std::string& path) {
+  return with_deep_stack([&] { return read_words(path); });
 }
 
 namespace {

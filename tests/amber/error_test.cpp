@@ -27,6 +27,13 @@ void check_all(const std::vector<std::pair<std::string, std::string>>& scripts, 
   }
 }
 
+TEST_CASE("a RUN of more threads than numbers of 32 bits is refused at its line", "[amber]") {
+  check_all({{kPipeline + "RUN p 4294967295 4294967295 4294967295\n",
+              "t.amber:12: error: a launch of 4294967295 x 4294967295 x 4294967295 blocks of 1 threads"},
+             {kPipeline + "RUN p 65536 65536 1\n", "has more than 4294967295 threads"}},
+            Verdict::Failed, Exit::UserInput);
+}
+
 TEST_CASE("a script that is wrong fails as bad input at the line of the mistake", "[amber]") {
   check_all(
       {{"BUFFER b\n", "t.amber:2: error: 'b' has no DATA_TYPE"},

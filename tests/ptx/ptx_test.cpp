@@ -314,6 +314,8 @@ TEST_CASE("mistakes are told with file, line and column, all at once") {
         std::string::npos);
   CHECK(message_of(storing("call printf;", ".extern .func printf();\n")).find("has no body") !=
         std::string::npos);
+  CHECK(message_of(storing(".local .b8 big[524289];"))
+            .find("'big': more than 524288 bytes of local memory of one thread") != std::string::npos);
   CHECK(message_of(kHead).find("the module has no kernel") != std::string::npos);
 }
 

@@ -1,0 +1,174 @@
+// Adds up sizes of types, and depths of constructs along the call graph.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/spirv/limits.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+#include <span>
+#include <spirv/unified1/spirv.hpp11>
+#include <utility>
+
+#include "base/diagnostics.h"
+#include "frontend/spirv/source_lines.h"
+#include "frontend/spirv/words.h"
+#include "frontend/virtual_program.h"
+
+namespace glint::frontend {
+namespace {
+
+using enum spv::Op;
+using Inst = std::span<const uint32_t>;
+
+struct Place {
+  uint32_t depth = 0;
+  isa::Line line;
+};
+
+// Holds what limits apply to.
+struct Survey {
+  struct Variable {
+    uint64_t bytes = 0;
+    isa::Line line;  // of the first instruction that uses it
+  };
+  struct Call {
+    uint32_t callee = 0;
+    Place at;
+  };
+  struct Function {
+    Place deepest;
+    std::vector<Call> calls;
+  };
+  std::map<uint32_t, std::string> names;
+  std::map<uint32_t, uint64_t> type_bytes;  // saturated at kHuge
+  std::map<uint32_t, uint64_t> constants;
+  std::map<uint32_t, uint32_t> pointees;  // of pointers to memory of one thread
+  std::map<uint32_t, Variable> variables;
+  std::map<uint32_t, Function> functions;
+};
+
+constexpr uint64_t kHuge = uint64_t{1} << 40;
+
+uint64_t times(uint64_t a, uint64_t b) {
+  return b != 0 && a > kHuge / b ? kHuge : a * b;
+}
+
+class Reader {
+ public:
+  Survey read(const std::vector<uint32_t>& words) {
+    for (size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
+      const size_t length = words[at] >> 16;
+      if (length == 0 || at + length > words.size()) break;  // The validator says what is wrong.
+      const Inst inst(&words[at], length);
+      if (!lines.read(inst)) instruction(inst);
+    }
+    return std::move(out_);
+  }
+  SourceLines lines;
+
+ private:
+  void instruction(Inst w) {
+    const spv::Op op = op_of(w[0]);
+    if (op == OpName && w.size() > 2) out_.names[w[1]] = text_at(w.subspan(2));
+    if (w.size() > 3 && (op == OpConstant || op == OpSpecConstant)) out_.constants[w[2]] = w[3];
+    if (w.size() >= 2) type(op, w);
+    if (op == OpVariable && w.size() > 3)
+      if (const auto pointee = out_.pointees.find(w[1]); pointee != out_.pointees.end())
+        out_.variables[w[2]] = {bytes_of(pointee->second), {}};
+    if (function_) control(op, w);
+    if (op == OpFunction && w.size() > 2) function_ = &out_.functions[w[2]], merges_.clear();
+    if (op == OpFunctionEnd) function_ = nullptr;
+  }
+
+  uint64_t bytes_of(uint32_t type) const {
+    const auto found = out_.type_bytes.find(type);
+    return found == out_.type_bytes.end() ? 4 : found->second;
+  }
+
+  void type(spv::Op op, Inst w) {
+    uint64_t bytes = 0;
+    if ((op == OpTypeInt || op == OpTypeFloat) && w.size() > 2) bytes = std::max(w[2] / 8, 1u);
+    if ((op == OpTypeVector || op == OpTypeMatrix) && w.size() > 3) bytes = times(bytes_of(w[2]), w[3]);
+    if (op == OpTypeArray && w.size() > 3)
+      if (const auto count = out_.constants.find(w[3]); count != out_.constants.end())
+        bytes = times(bytes_of(w[2]), count->second);
+    if (op == OpTypeStruct)
+      for (const uint32_t member : w.subspan(2)) bytes = std::min(kHuge, bytes + bytes_of(member));
+    if (bytes != 0) out_.type_bytes[w[1]] = bytes;
+    if (op != OpTypePointer || w.size() < 4) return;
+    const auto storage = spv::StorageClass(w[2]);
+    if (storage == spv::StorageClass::Function || storage == spv::StorageClass::Private)
+      out_.pointees[w[1]] = w[3];
+  }
+
+  // The blocks of a construct stand between its header and its merge block.
+  void control(spv::Op op, Inst w) {
+    if (op == OpLabel && w.size() > 1)
+      if (const auto at = std::find(merges_.begin(), merges_.end(), w[1]); at != merges_.end())
+        merges_.erase(at, merges_.end());
+    if ((op == OpSelectionMerge || op == OpLoopMerge) && w.size() > 1) merges_.push_back(w[1]);
+    const Place here{uint32_t(merges_.size()), lines.line()};
+    if (here.depth > function_->deepest.depth) function_->deepest = here;
+    if (op == OpFunctionCall && w.size() > 3) function_->calls.push_back({w[3], here});
+    const bool is_access = op == OpStore || op == OpLoad || op == OpAccessChain ||
+                           op == OpInBoundsAccessChain || op == OpFunctionCall || op == OpCopyMemory;
+    if (!is_access || lines.line().line == 0) return;
+    for (const uint32_t operand : w.subspan(1))
+      if (const auto v = out_.variables.find(operand); v != out_.variables.end() && v->second.line.line == 0)
+        v->second.line = lines.line();
+  }
+
+  Survey out_;
+  Survey::Function* function_ = nullptr;
+  std::vector<uint32_t> merges_;  // of the constructs around the present block
+};
+
+// Returns the deepest place of a function with what it calls. A function that calls itself is refused
+// elsewhere, and its inner call is not followed.
+Place deepest_of(const Survey& module, uint32_t id, std::map<uint32_t, Place>& known) {
+  if (const auto found = known.find(id); found != known.end()) return found->second;
+  const auto function = module.functions.find(id);
+  if (function == module.functions.end()) return {};
+  Place deepest = known[id] = function->second.deepest;
+  for (const Survey::Call& call : function->second.calls) {
+    Place inner = deepest_of(module, call.callee, known);
+    inner.depth += call.at.depth;
+    if (inner.depth > deepest.depth) deepest = inner;
+  }
+  return known[id] = deepest;
+}
+
+}  // namespace
+
+void check_limits(const std::vector<uint32_t>& words, const std::string& name) {
+  Reader reader;
+  const Survey module = reader.read(words);
+  std::string message;
+  const auto add = [&](const isa::Line& line, const std::string& text) {
+    const bool known = line.line != 0 && line.file < reader.lines.files.size();
+    message += fmt::format(
+        "\n  {}: {}", known ? fmt::format("{}:{}", reader.lines.files[line.file], line.line) : name, text);
+  };
+  for (const auto& [id, variable] : module.variables) {
+    if (variable.bytes <= kMostLocalBytes) continue;
+    const auto called = module.names.find(id);
+    add(variable.line,
+        fmt::format(
+            "variable {} takes {} bytes of every thread, and at most {} are possible",
+            called == module.names.end() ? fmt::format("%{}", id) : "'" + called->second + "'",
+            variable.bytes >= kHuge ? "more than a million million" : fmt::format("{}", variable.bytes),
+            kMostLocalBytes));
+  }
+  std::map<uint32_t, Place> known;
+  Place deepest;
+  for (const auto& [id, function] : module.functions)
+    if (const Place here = deepest_of(module, id, known); here.depth > deepest.depth) deepest = here;
+  if (deepest.depth > kDeepestNesting)
+    add(deepest.line, fmt::format("selections and loops lie {} deep in each other, with those of called "
+                                  "functions, and at most {} are possible",
+                                  deepest.depth, kDeepestNesting));
+  if (!message.empty()) throw UnsupportedError(fmt::format("{}: not supported:{}", name, message));
+}
+
+}  // namespace glint::frontend
