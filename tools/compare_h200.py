@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Runs the kernels of bench/held_out under the preset h200 and prints the results next to an H200's counters.
 
-Usage: compare_h200.py GLINT [KERNEL ...] [--set KEY=VALUE ...] [--config NAME]
-The output is a table in Markdown. The hardware's cycles are the median of three launches. The exit status is 2 when a kernel has no
-counters.
+Usage: compare_h200.py GLINT [KERNEL ...] [--set KEY=VALUE ...] [--config NAME] [--runs FOLDER]
+The output is a table in Markdown. The hardware's cycles are the median of three launches. The folder of --runs keeps the run directories, for
+`glint model FOLDER`. The exit status is 2 when a kernel has no counters.
 """
 # SPDX-License-Identifier: Apache-2.0
 import argparse
@@ -65,16 +65,17 @@ def read_counters():
     return {kernel: {key: statistics.median(row[key] for row in rows) for key in rows[0]} for kernel, rows in launches.items()}
 
 
-def run(glint, kernel, config, settings):
-    """Returns what Glint counts: cycles, executed instructions, warps' loads from global memory."""
+def run(glint, kernel, config, settings, runs):
+    """Returns what Glint counts: cycles, executed instructions, warps' loads from global memory. `runs` keeps the run directory, unless it is None."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{kernel}.toml"
         path.write_text(launch_file(kernel))
-        command = [glint, "run", path, "--config", config, "--out", Path(folder) / "out"]
+        out = Path(runs or folder) / kernel
+        command = [glint, "run", path, "--config", config, "--out", out]
         for setting in settings:
             command += ["--set", setting]
         subprocess.run(command, check=True, capture_output=True)
-        rows = {row["path"]: row["value"] for row in csv.DictReader(open(Path(folder) / "out" / "stats.csv"))}
+        rows = {row["path"]: row["value"] for row in csv.DictReader(open(out / "stats.csv"))}
 
     def total(name):
         return sum(float(value) for path, value in rows.items() if re.fullmatch(rf"gpu\.core\[\d+\]\.{name}", path))
@@ -88,6 +89,7 @@ def main():
     parser.add_argument("kernel", nargs="*", default=list(LAUNCHES))
     parser.add_argument("--config", default="h200")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--runs", metavar="FOLDER")
     options = parser.parse_args()
     counters = read_counters()
     unknown = [kernel for kernel in options.kernel if kernel not in LAUNCHES or kernel not in counters]
@@ -97,7 +99,7 @@ def main():
     print("| kernel | cycles | hardware | error | instructions | hardware | error | global loads |\n|---|---|---|---|---|---|---|---|")
     errors = []
     for kernel in options.kernel:
-        cycles, instructions, loads = run(options.glint, kernel, options.config, options.set)
+        cycles, instructions, loads = run(options.glint, kernel, options.config, options.set, options.runs)
         real = counters[kernel]
         error = cycles / real["sm__cycles_elapsed.max"] - 1
         executed = real["smsp__inst_executed.sum"]

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <numeric>
 
 #include "base/diagnostics.h"
 #include "report/metrics/formula.h"
@@ -13,14 +14,27 @@ namespace {
 
 constexpr double kSectorBytes = 32;  // bytes of a request to DRAM
 
-constexpr const char* kDramLatency = "sum(l1.miss_cycles) / sum(l1.timed_misses)";
+// These instructions go to global memory. Traces are counted by the RT units.
+constexpr const char* kMemoryInstructions =
+    "sum(core.global_loads) + sum(core.global_stores) + sum(core.global_atomics) + sum(core.local_loads) + "
+    "sum(core.local_stores) + sum(core.texture_fetches) + sum(core.surface_loads) + sum(core.surface_stores) "
+    "+ "
+    "sum(core.binding_reads) + sum(rt.warps)";
+// Instruction lines and constants that reach the L1 are not accesses of these.
+constexpr const char* kReads = "sum(l1.reads::*) - sum(l1.reads::instruction) - sum(l1.reads::constant)";
+
+double ratio(double above, double below) {
+  return below > 0 ? above / below : 0;
+}
+
+// Returns the sum of the statistics whose path matches, of which there may be none.
+double total(const RunRecord& run, const std::string& pattern) {
+  const std::vector<double> values = run.values(pattern);
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
 
 double value_of(const std::string& formula, const RunRecord& run, const std::string& name) {
   if (const std::optional<double> value = evaluate(formula, run)) return *value;
-  if (formula == kDramLatency && run.text("mode") == "timing")
-    throw UserError(
-        {name}, "none of this run's reads missed in the L1, so there is no latency of memory to model",
-        "Hong and Kim's model takes timing runs that read memory; all models take runs of scenes");
   throw UserError({name}, fmt::format("this run has no '{}'", formula),
                   "the model needs a finished run of the timing machine: glint run --mode timing");
 }
@@ -30,27 +44,49 @@ double value_of(const std::string& formula, const RunRecord& run, const std::str
 HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name) {
   const auto value = [&](const std::string& formula) { return value_of(formula, run, name); };
   HongKimInputs in;
-  in.cores = value("config(cores)");
   const double warps = value("sum(core.warps)");
+  for (const double each : run.values("gpu.core[*].warps")) in.cores += each > 0;
   in.warps = std::min(value("run(residency.warps)"), warps / in.cores);
+  in.blocks = in.warps * value("sum(core.blocks)") / warps;
   in.repetitions = warps / in.cores / in.warps;
-  in.instructions = value("sum(core.instructions)") / warps;
-  const double memory =
-      value("sum(core.instructions_by_class::mem) + sum(core.instructions_by_class::tex) + sum(rt.warps)");
+  in.instructions = value("sum(core.instructions) + sum(core.sequence_slots)") / warps;
+  in.barriers = value("sum(core.barriers)") / warps;
+  const double memory = value(kMemoryInstructions), reads = value(kReads);
   in.memory_instructions = memory / warps;
-  in.accesses = value("sum(l1.reads::*) + sum(l1.writes::*)") / memory;
-  in.dram_latency = value(kDramLatency);
-  in.miss_rate = value("sum(l1.misses::*) / sum(l1.reads::*)");
+  in.accesses = ratio(reads + value("sum(l1.writes::*)"), memory);
+  // Atomics are not among the timed misses, so a run that has nothing else takes the latency of all reads.
+  const double timed = value("sum(l1.timed_misses)");
+  in.dram_latency = timed > 0 ? value("sum(l1.miss_cycles)") / timed
+                              : ratio(total(run, "gpu.memory.load_latency.cycles::*"),
+                                      total(run, "gpu.memory.load_latency.reads::*"));
+  in.hit_latency = value("config(memory.l1.hit_latency)");
+  in.miss_rate =
+      ratio(value("sum(l1.misses::*) - sum(l1.misses::instruction) - sum(l1.misses::constant)"), reads);
+  in.launch_latency = value("config(core.launch_latency)");
   in.departure_delay = 1 / value("config(memory.l1.ports)");
   in.issue_cycles = 1 / value("config(core.schedulers)");
-  in.bytes = kSectorBytes * value("sum(dram.requests)") / memory;
+  in.bytes = ratio(kSectorBytes * value("sum(dram.requests)"), memory);
   in.bandwidth = value("run(memory_peaks.dram_bytes_per_second) / (config(clock_mhz) * 1000000)");
   return in;
 }
 
+namespace {
+
+// Predicts a launch without memory instructions: warps compute in turns.
+HongKimResult computation_alone(HongKimResult out) {
+  const HongKimInputs& in = out.inputs;
+  out.equation = 24, out.cwp = 1;
+  out.computation_cycles = in.issue_cycles * in.instructions;
+  out.cycles = in.launch_latency + out.computation_cycles * in.warps * in.repetitions;
+  return out;
+}
+
+}  // namespace
+
 HongKimResult hong_kim(const HongKimInputs& in) {
   HongKimResult out;
   out.inputs = in;
+  if (in.memory_instructions == 0) return computation_alone(out);
   const double latency =
       in.memory_latency() +
       (in.accesses - 1) * in.departure_delay;             // latency of a memory instruction (Mem_L_Uncoal)
@@ -68,29 +104,37 @@ HongKimResult hong_kim(const HongKimInputs& in) {
   if (out.mwp == in.warps && out.cwp == in.warps) {
     out.equation = 22;
     out.cycles = out.memory_cycles + out.computation_cycles + between * (out.mwp - 1);
-  } else if (out.cwp >= out.mwp || out.computation_cycles > out.memory_cycles) {
+  } else if (out.cwp >= out.mwp) {
+    // Choice: the paper also takes (23) where a warp computes longer than it waits. It counts the computation
+    // of one warp only, so (24) is taken there.
     out.equation = 23;
     out.cycles = out.memory_cycles * in.warps / out.mwp + between * (out.mwp - 1);
   } else {
     out.equation = 24;
     out.cycles = latency + out.computation_cycles * in.warps;
   }
-  out.cycles *= in.repetitions;
+  out.synchronization_cost = delay * (out.mwp - 1) * in.barriers * in.blocks * in.repetitions;
+  out.cycles = in.launch_latency + out.cycles * in.repetitions + out.synchronization_cost;
   return out;
 }
 
 std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult& result) {
   const HongKimInputs& in = result.inputs;
-  return {{"warps_per_core", in.warps},
+  return {{"cores", in.cores},
+          {"warps_per_core", in.warps},
+          {"blocks_per_core", in.blocks},
           {"repetitions", in.repetitions},
           {"instructions_per_warp", in.instructions},
           {"memory_instructions_per_warp", in.memory_instructions},
           {"accesses_per_memory_instruction", in.accesses},
           {"dram_latency", in.dram_latency},
+          {"l1_hit_latency", in.hit_latency},
           {"l1_miss_rate", in.miss_rate},
           {"memory_latency", in.memory_latency()},
           {"departure_delay", in.departure_delay},
           {"issue_cycles", in.issue_cycles},
+          {"barriers_per_warp", in.barriers},
+          {"launch_latency", in.launch_latency},
           {"dram_bytes_per_memory_instruction", in.bytes},
           {"dram_bytes_per_cycle", in.bandwidth},
           {"memory_cycles", result.memory_cycles},
@@ -99,7 +143,8 @@ std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult
           {"mwp_peak_bandwidth", result.mwp_peak_bandwidth},
           {"mwp", result.mwp},
           {"cwp", result.cwp},
-          {"equation", double(result.equation)}};
+          {"equation", double(result.equation)},
+          {"synchronization_cost", result.synchronization_cost}};
 }
 
 }  // namespace glint::report

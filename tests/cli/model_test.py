@@ -50,18 +50,36 @@ class Model(GlintTest):
         self.simulate("WKND_SH", "functional", "--mode", "functional")
         self.expect(2, ["functional", "timing machine"], "model", "functional")
 
-    def test_a_run_of_a_kernel_is_refused_as_no_run_of_a_scene(self):
+    def test_runs_of_kernels_are_modelled_by_their_statistics_with_or_without_reads(self):
         done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", "saxpy")
         self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.expect(2, ["the kernel 'saxpy', and models take runs of scenes", "--statistics-only"], "model", "saxpy")
-        self.assertNotIn("needs a finished run of the timing machine", done.stderr)
-        self.assertEqual(self.glint("model", "saxpy", "--statistics-only").returncode, 0)
+        done = self.glint("model", "saxpy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("saxpy is of the kernel 'saxpy': it is left out", done.stderr)
+        self.assertNotIn("interval", (self.folder / "saxpy/models.csv").read_text())
         self.write("idle.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry idle()\n{\n  ret;\n}\n")
         self.write("idle.toml", 'kernel = "idle.ptx"\ngrid = 1\nblock = 32\n')
         done = self.glint("run", "idle.toml", "--out", "idle")
         self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.expect(2, ["idle"], "model", "idle", "--statistics-only")
-        self.assertNotIn("needs a finished run of the timing machine", done.stderr)
+        done = self.glint("model", "idle", "--statistics-only", "--inputs")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = self.table("idle/models.csv")[0]
+        self.assertEqual(float(row["memory_instructions_per_warp"]), 0)
+        self.assertGreater(float(row["model:Hong and Kim"]), float(row["launch_latency"]))
+
+    def test_the_table_of_several_runs_lies_beside_them_and_never_in_the_working_directory(self):
+        for name in ("a", "b", "runs/a", "runs/b"):
+            done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.glint("model", "runs/a", "runs/b/")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("runs/models.csv", done.stdout)
+        self.assertEqual([row["workload"] for row in self.table("runs/models.csv")], ["a", "b"])
+        self.expect(2, ["--out"], "model", "a", "b")
+        self.expect(2, ["--out"], "model", "runs/a", "b")
+        self.assertFalse((self.folder / "models.csv").exists())
+        self.assertEqual(self.glint("model", "a", "b", "-o", "here.csv").returncode, 0)
+        self.assertEqual(len(self.table("here.csv")), 2)
 
     def test_a_run_that_is_not_the_launch_of_its_run_json_is_refused(self):
         self.simulate("WKND_SH", "one")

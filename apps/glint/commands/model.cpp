@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
@@ -9,7 +10,6 @@
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
-#include "apps/glint/options/run_files.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/interval/interval_machine.h"
@@ -102,23 +102,15 @@ double run_interval(const Session& session, const ModelOptions& options, const r
   return double(estimate.cycles);
 }
 
-report::ModelRow row_of(const Session& session, const ModelOptions& options, const std::string& workload,
-                        const std::string& directory) {
+report::ModelRow row_of(const Session& session, const ModelOptions& options, bool with_interval,
+                        const std::string& workload, const std::string& directory) {
   const report::RunRecord run = report::RunRecord::read(directory);
-  if (!options.statistics_only && !run.fact("rays.bounces"))
-    throw UserError(
-        {directory},
-        fmt::format("this is a run of {} '{}', and models take runs of scenes",
-                    run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel",
-                    run.text("scene.name")),
-        "--statistics-only gives Hong and Kim's model alone, which takes any timing run that reads memory");
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
   const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
   row.predicted.push_back(model.cycles);
   row.inputs = report::hong_kim_columns(model);
-  if (!options.statistics_only)
-    row.predicted.push_back(run_interval(session, options, run, directory, row.inputs));
+  if (with_interval) row.predicted.push_back(run_interval(session, options, run, directory, row.inputs));
   return row;
 }
 
@@ -132,23 +124,55 @@ std::string inputs_text(const report::ModelTable& models) {
   return out;
 }
 
+using Runs = std::vector<std::pair<std::string, std::string>>;  // workload and directory
+
+// Returns whether the interval model takes all runs. When it does not, says on stderr which run is in the
+// way.
+bool takes_interval(const Runs& runs) {
+  for (const auto& [workload, directory] : runs) {
+    const report::RunRecord run = report::RunRecord::read(directory);
+    if (run.fact("rays.bounces")) continue;
+    fmt::print(stderr,
+               "note: the interval model takes runs of scenes, and {} is of {} '{}': it is left out\n",
+               directory, run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel",
+               run.text("scene.name"));
+    return false;
+  }
+  return true;
+}
+
+// Returns the path of the table: in the one directory that was named, or beside several.
+std::string table_path(const ModelOptions& options) {
+  if (!options.out.empty()) return options.out;
+  if (options.runs.size() == 1) return options.runs[0] + "/models.csv";
+  const auto parent = [](const std::string& run) {
+    std::filesystem::path path = std::filesystem::path(run).lexically_normal();
+    if (!path.has_filename()) path = path.parent_path();
+    return path.parent_path();
+  };
+  const std::filesystem::path folder = parent(options.runs[0]);
+  for (const std::string& run : options.runs)
+    if (folder.empty() || parent(run) != folder)
+      throw UserError({run},
+                      "the runs lie in no folder of their own in which the table could lie beside them",
+                      "--out names the file of the table");
+  return (folder / "models.csv").string();
+}
+
 Exit model(const Session& session, const ModelOptions& options) {
-  std::vector<std::pair<std::string, std::string>> runs;
+  const std::string out = table_path(options);
+  Runs runs;
   for (const std::string& folder : options.runs)
     for (const auto& run : finished_runs(folder)) runs.push_back(run);
+  const bool with_interval = !options.statistics_only && takes_interval(runs);
   report::ModelTable models;
   models.models = {"Hong and Kim"};
-  if (!options.statistics_only) models.models.push_back("interval model");
+  if (with_interval) models.models.push_back("interval model");
   report::Progress progress(session.on_terminal ? stdout : nullptr, "models", session.terminal);
   for (const auto& [workload, directory] : runs) {
-    models.rows.push_back(row_of(session, options, workload, directory));
+    models.rows.push_back(row_of(session, options, with_interval, workload, directory));
     progress.update(models.rows.size(), runs.size());
   }
-  std::vector<std::string> directories;
-  for (const auto& [workload, directory] : runs) directories.push_back(directory);
-  tell_of_files(directories);
-  std::string out = options.out;
-  if (out.empty()) out = options.runs.size() == 1 ? options.runs[0] + "/models.csv" : "models.csv";
   write_output(out, report::model_csv(models));
   if (out == "-") return Exit::Ok;
   write_output("", report::model_text(models) + (options.inputs ? inputs_text(models) : ""));
@@ -171,7 +195,7 @@ void add_model(Command app, Session& session) {
   command
       .add_option("-o,--out", options->out,
                   "File to write the table with all inputs to, or - for stdout (default: models.csv in the "
-                  "directory, or here with several)")
+                  "directory, or beside several directories of one folder)")
       .type_name("FILE");
   command.add_flag("--inputs", options->inputs, "Print the inputs of each run, too");
   command.add_flag("--statistics-only", options->statistics_only,

@@ -66,6 +66,39 @@ TEST_CASE("Computation that hides memory is equation 24", "[analytical]") {
   CHECK(std::abs(out.cycles - 2 * (200 + 1000 * 8)) < 1e-9);
 }
 
+TEST_CASE("A warp that computes longer than it waits is equation 24, also where few warps compute",
+          "[analytical]") {
+  HongKimInputs in = small();
+  in.warps = 1.5, in.instructions = 4000;  // (Comp + Mem) / Comp = 1.5 and MWP = 1.5
+  CHECK(hong_kim(in).equation == 22);
+  in.warps = 4;
+  const HongKimResult out = hong_kim(in);
+  CHECK(out.mwp == 4);
+  CHECK(out.equation == 24);
+  CHECK(std::abs(out.cycles - 2 * (200 + 4000 * 4)) < 1e-9);
+}
+
+TEST_CASE("Without memory instructions the warps compute in turns", "[analytical]") {
+  HongKimInputs in = small();
+  in.memory_instructions = 0, in.accesses = 0, in.bytes = 0, in.launch_latency = 50;
+  CHECK(hong_kim(in).cycles == 50 + 2 * 100 * 8);
+}
+
+TEST_CASE("A barrier costs the departures of the other memory warps, for each block", "[analytical]") {
+  HongKimInputs in = small();
+  const double without = hong_kim(in).cycles;
+  in.barriers = 3, in.blocks = 4;
+  const HongKimResult out = hong_kim(in);  // 4 cycles a departure, MWP 8
+  CHECK(std::abs(out.synchronization_cost - 4 * 7 * 3 * 4 * 2) < 1e-9);
+  CHECK(std::abs(out.cycles - without - out.synchronization_cost) < 1e-9);
+}
+
+TEST_CASE("Accesses that hit wait for the L1", "[analytical]") {
+  HongKimInputs in = small();
+  in.miss_rate = 0.25, in.hit_latency = 20;
+  CHECK(hong_kim(in).memory_cycles == 10 * (100 + 15));
+}
+
 TEST_CASE("LumiBench's adjustment multiplies the latency by the miss rate", "[analytical]") {
   HongKimInputs in = small();
   in.miss_rate = 0.25;
