@@ -38,6 +38,19 @@ class Table(GlintTest):
 
 
 class Frames(GlintTest):
+    def test_occlusion_rays_end_at_their_first_hit_in_every_preset_and_visit_fewer_nodes(self):
+        nodes = {}
+        for preset in sorted(path.stem for path in (ROOT / "configs").glob("*.toml")):
+            done = self.glint("describe", "rt.nearest_first_hit", "--config", preset)
+            self.assertRegex(done.stdout, r"\bfalse\b", preset)
+        for key in ("true", "false"):
+            done = self.glint("run", "SHIP_SH", "--mode", "functional", "--size", "16x16", "--spp", "1", "--set", f"rt.nearest_first_hit={key}", "--out", key)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            stats = json.loads((self.folder / key / "stats.json").read_text())
+            nodes[key] = stats["gpu"]["nodes"]["value"]
+        self.assertLess(nodes["false"], nodes["true"])
+        self.assertEqual(*((self.folder / key / "image.pfm").read_bytes() for key in nodes))
+
     def test_statistics_and_pictures_are_the_bytes_that_every_distribution_gives(self):
         for row in csv.DictReader((ROOT / frame_table.PATH).read_text().splitlines()):
             for threads in ("1", "3"):
