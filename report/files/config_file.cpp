@@ -36,7 +36,7 @@ std::string comment_of(const ParamInfo& param) {
 
 }  // namespace
 
-std::string config_file(const std::vector<ParamInfo>& params, const std::string& title) {
+std::string config_file(const std::vector<ParamInfo>& params, const std::string& title, bool with_docs) {
   std::string out = fmt::format("# {}\n", title);
   for (const Table& table : tables_of(params)) {
     if (table.params.empty()) continue;
@@ -46,7 +46,8 @@ std::string config_file(const std::vector<ParamInfo>& params, const std::string&
       width = std::max(width, param->key.size() - param->key.rfind('.') - 1 + 3 + param->value.size());
     for (const ParamInfo* param : table.params) {
       const std::string assignment = param->key.substr(param->key.rfind('.') + 1) + " = " + param->value;
-      out += fmt::format("{:<{}}  # {}\n", assignment, width, comment_of(*param));
+      out += with_docs ? fmt::format("{:<{}}  # {}\n", assignment, width, comment_of(*param))
+                       : assignment + "\n";
     }
   }
   return out;

@@ -11,7 +11,9 @@
 namespace glint::report {
 
 // Returns the file. `title` becomes the first comment line. Every key is in the table of its dotted prefix.
-std::string config_file(const std::vector<ParamInfo>& params, const std::string& title);
+// Without `with_docs`, keys have no comments.
+std::string config_file(const std::vector<ParamInfo>& params, const std::string& title,
+                        bool with_docs = true);
 
 // Returns "key=value" lines of all parameters without comments, from which configuration hashes are made.
 std::string config_key_values(const std::vector<ParamInfo>& params);

@@ -181,8 +181,9 @@ void RunDirectory::write_stats(const stats::Group& root, bool compact) const {
     write("stats." + format, Registry<StatWriter>::instance().entry(format).make_default({})->write(root));
 }
 
-void RunDirectory::write_config(const std::vector<ParamInfo>& params, const std::string& title) const {
-  write("config.toml", config_file(params, title));
+void RunDirectory::write_config(const std::vector<ParamInfo>& params, const std::string& title,
+                                bool compact) const {
+  write("config.toml", config_file(params, title, !compact));
 }
 
 void RunDirectory::write_run(const RunInfo& info) const {

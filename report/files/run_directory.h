@@ -102,8 +102,10 @@ class RunDirectory {
   void write_image(const ImageView& image) const;  // image.png, image.pfm
   // Writes stats.<format> of every registered format, or, for RunInfo::compact, stats.csv with totals alone.
   void write_stats(const stats::Group& root, bool compact = false) const;
-  void write_config(const std::vector<ParamInfo>& params, const std::string& title) const;  // config.toml
-  void write_run(const RunInfo& info) const;                                                // run.json
+  // Writes config.toml, without comments for RunInfo::compact.
+  void write_config(const std::vector<ParamInfo>& params, const std::string& title,
+                    bool compact = false) const;
+  void write_run(const RunInfo& info) const;            // run.json
   const FileList& written() const { return written_; }  // what this object has written and not removed
 
  private:

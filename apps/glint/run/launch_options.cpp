@@ -54,10 +54,10 @@ void add_machine_options(Command command, LaunchOptions& options) {
 
 void add_stats_option(Command command, std::string& stats) {
   command
-      .add_option(
-          "--stats", stats,
-          "Selects the statistics to write: full has every unit, in three formats; compact has totals "
-          "over units in stats.csv, at most 60 kB, from which all metrics follow")
+      .add_option("--stats", stats,
+                  "Selects the statistics to write: full has every unit, in three formats; compact has "
+                  "totals over units in stats.csv, from which all metrics follow, and makes a run of at most "
+                  "60 kB without its pictures")
       .one_of({"full", "compact"})
       .capture_default_str();
 }

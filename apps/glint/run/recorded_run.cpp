@@ -82,7 +82,7 @@ void keep_prints(const std::string& printed, const report::RunDirectory& directo
 void begin_directory(report::RunDirectory& directory, const report::RunInfo& info,
                      const pipeline::GpuParams& gpu, const std::string& title) {
   directory.begin(info);
-  directory.write_config(describe_params(gpu), "Resolved configuration of: " + title);
+  directory.write_config(describe_params(gpu), "Resolved configuration of: " + title, info.compact);
 }
 
 pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
