@@ -264,7 +264,7 @@ Outcome OpLab::run_on(bool timing, const std::vector<Column>& sources, uint64_t 
   Outcome out;
   out.after = before;
   const auto listen = [&](const exec::Retired& retired) {
-    if (retired.issued.row == &row_) out.lanes += uint64_t(std::popcount(retired.issued.lanes));
+    if (retired.issued.row == counted_) out.lanes += uint64_t(std::popcount(retired.issued.lanes));
   };
   try {
     if (timing) {

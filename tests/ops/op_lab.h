@@ -65,6 +65,8 @@ class OpLab {
   // Adds an image and returns its handle. Its place and its name are set here, and its texels are random
   // until run() sets them.
   uint32_t add_image(exec::ImageView view);
+  // Counts the lanes of another op of the program in Outcome::lanes.
+  void count(const isa::OpRow& row) { counted_ = &row; }
   Spaces random_spaces(Random& random) const;
 
   // Runs the op for the threads of `enabled` on both machines, whose outcomes must be equal.
@@ -80,6 +82,7 @@ class OpLab {
   void read_spaces(Spaces& out) const;
 
   const isa::OpRow& row_;
+  const isa::OpRow* counted_ = &row_;
   const int32_t displacement_;
   const uint32_t num_extra_;
   size_t num_sources_ = 0, num_results_ = 0;

@@ -17,18 +17,20 @@ uint64_t check_access(const isa::OpRow& row);
 uint64_t check_atomic(const isa::OpRow& row);
 uint64_t check_control(const isa::OpRow& row);
 uint64_t check_image_query(const isa::OpRow& row);
+uint64_t check_ray_query(const isa::OpRow& row);
 uint64_t check_surface(const isa::OpRow& row);
 uint64_t check_texture(const isa::OpRow& row);
 
-// Names an oracle by its file, which is what the op table's families name.
+// Names an oracle by its file, which is what isa::test_of() gives.
 struct OracleFile {
   std::string_view file;
   Oracle check;
 };
 inline constexpr OracleFile kOracles[] = {
-    {"tests/ops/access.cpp", &check_access},   {"tests/ops/atomic.cpp", &check_atomic},
-    {"tests/ops/control.cpp", &check_control}, {"tests/ops/image_query.cpp", &check_image_query},
-    {"tests/ops/surface.cpp", &check_surface}, {"tests/ops/texture.cpp", &check_texture},
+    {"tests/ops/access.cpp", &check_access},       {"tests/ops/atomic.cpp", &check_atomic},
+    {"tests/ops/control.cpp", &check_control},     {"tests/ops/image_query.cpp", &check_image_query},
+    {"tests/ops/ray_query.cpp", &check_ray_query}, {"tests/ops/surface.cpp", &check_surface},
+    {"tests/ops/texture.cpp", &check_texture},
 };
 
 }  // namespace glint::test
