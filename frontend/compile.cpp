@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "frontend/cache.h"
+#include "frontend/pass_times.h"
 #include "frontend/program_bytes.h"
 #include "frontend/spirv/specialize.h"
 
@@ -81,6 +82,19 @@ isa::Program compile_file(const std::string& path, const GlslOptions& glsl, cons
                           Diagnostics& warnings) {
   return compile_module(spirv_of_file(path, glsl), path, glsl.entry_point, options, warnings, glsl.cache)
       .program;
+}
+
+PassTimes time_compilation(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
+                           Diagnostics& warnings) {
+  PassTimes times;
+  GlslOptions anew = glsl;
+  anew.cache = nullptr;
+  const std::vector<uint32_t> spirv = [&] {
+    const PassTimer timer(&times, is_spirv_file(path) ? "reading" : "glslang", "");
+    return spirv_of_file(path, anew);
+  }();
+  lower(simplify(spirv, path, warnings, &times), path, options, glsl.entry_point, &times);
+  return times;
 }
 
 }  // namespace glint::frontend

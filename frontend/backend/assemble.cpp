@@ -6,18 +6,28 @@
 #include "frontend/backend/peephole.h"
 #include "frontend/backend/schedule.h"
 #include "frontend/compile.h"
+#include "frontend/pass_times.h"
 
 namespace glint::frontend {
 
-isa::Program assemble(VirtualProgram program, const BackendOptions& options) {
+isa::Program assemble(VirtualProgram program, const BackendOptions& options, PassTimes* times) {
   const Ops ops;
-  simplify_code(program, ops);
-  convert_selections(program, ops);
-  keep_predicates_across_calls(program, ops);
-  if (options.schedule) schedule(program, options.max_registers, options.guard_latency);
-  Allocation allocation = allocate(program, options.max_registers, ops);
-  expand_calls(program, allocation, ops);
-  return emit(program, allocation, ops);
+  const auto pass = [&](const char* name, const auto& work) {
+    const PassTimer timer(times, "backend", name);
+    return work();
+  };
+  pass("simplify-code", [&] { simplify_code(program, ops); });
+  pass("convert-selections", [&] { convert_selections(program, ops); });
+  pass("keep-predicates", [&] { keep_predicates_across_calls(program, ops); });
+  if (options.schedule)
+    pass("schedule", [&] { schedule(program, options.max_registers, options.guard_latency); });
+  Allocation allocation = pass("allocate", [&] { return allocate(program, options.max_registers, ops); });
+  pass("expand-calls", [&] { expand_calls(program, allocation, ops); });
+  return pass("emit", [&] { return emit(program, allocation, ops); });
+}
+
+isa::Program assemble(VirtualProgram program, const BackendOptions& options) {
+  return assemble(std::move(program), options, nullptr);
 }
 
 }  // namespace glint::frontend

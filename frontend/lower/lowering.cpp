@@ -13,6 +13,7 @@
 #include "frontend/glsl/debug_print.h"
 #include "frontend/lower/query_calls.h"
 #include "frontend/lower/typed.h"
+#include "frontend/pass_times.h"
 #include "frontend/spirv/source_lines.h"
 #include "frontend/spirv/spirv.h"
 
@@ -356,12 +357,20 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
 }
 
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
-                   const std::string& entry_point) {
+                   const std::string& entry_point, PassTimes* times) {
   return with_deep_stack([&] {
-    VirtualProgram program = lower_to_virtual(spirv, name, entry_point, options.contract);
+    VirtualProgram program = [&] {
+      const PassTimer timer(times, "lowering", "");
+      return lower_to_virtual(spirv, name, entry_point, options.contract);
+    }();
     if (options.queries_call) make_queries_calls(program);
-    return assemble(std::move(program), options);
+    return assemble(std::move(program), options, times);
   });
+}
+
+isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
+                   const std::string& entry_point) {
+  return lower(spirv, name, options, entry_point, nullptr);
 }
 
 }  // namespace glint::frontend

@@ -7,10 +7,12 @@
 #include <fmt/ranges.h>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
+#include <sstream>
 
 #include "frontend/compile.h"
 #include "frontend/deep_stack.h"
 #include "frontend/glsl/debug_print.h"
+#include "frontend/pass_times.h"
 #include "frontend/spirv/by_reference.h"
 #include "frontend/spirv/inline_scopes.h"
 #include "frontend/spirv/inlined_size.h"
@@ -104,9 +106,30 @@ std::vector<uint32_t> with_extensions(std::vector<uint32_t> words, const std::ve
   return words;
 }
 
-// Returns the module after `passes`. When they fail, it returns nothing, and `messages` says why.
+// Holds what the passes of a module report besides their result.
+struct Report {
+  std::string messages;
+  PassTimes* times = nullptr;  // null: not wanted
+};
+
+// Adds a row for each line "name seconds ..." of the optimiser's report.
+void add_pass_times(const std::string& text, PassTimes& times) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    PassTime row{"optimiser", {}, 0};
+    if (words >> row.pass >> row.seconds) times.push_back(row);
+  }
+}
+
+std::string timed_validation(const std::vector<uint32_t>& spirv, const char* when, PassTimes* times) {
+  const PassTimer timer(times, "validation", when);
+  return validate_spirv(spirv);
+}
+
+// Returns the module after `passes`. When they fail, it returns nothing, and the report says why.
 std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                   std::string* messages) {
+                                   Report* report) {
   std::vector<uint32_t> extensions, output;
   std::vector<uint32_t> input = without_extensions(spirv, &extensions);
   allow_inlining(input);
@@ -115,25 +138,32 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
   optimizer.SetMessageConsumer(
       [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
-        if (level <= SPV_MSG_ERROR) *messages += fmt::format("{}\n", text);
+        if (level <= SPV_MSG_ERROR) report->messages += fmt::format("{}\n", text);
       });
   if (!optimizer.RegisterPassesFromFlags(passes))
-    throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + *messages);
+    throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + report->messages);
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // The module is validated later, with the extensions in place.
-  if (!optimizer.Run(input.data(), input.size(), &output, options)) return {};
+  std::ostringstream times;
+  if (report->times) optimizer.SetTimeReport(&times);
+  const bool done = [&] {
+    const PassTimer timer(report->times, "optimiser", "");
+    return optimizer.Run(input.data(), input.size(), &output, options);
+  }();
+  if (report->times) add_pass_times(times.str(), *report->times);
+  if (!done) return {};
   if (has_overlap) move_variables(output, spv::StorageClass::CrossWorkgroup, spv::StorageClass::Workgroup);
   return with_extensions(std::move(output), extensions);
 }
 
 // Returns the module after `passes`, or nothing when they fail or their result is not valid.
 std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
-                                         const std::vector<std::string>& passes, std::string* messages) {
-  std::vector<uint32_t> output = after_passes(spirv, passes, messages);
+                                         const std::vector<std::string>& passes, Report* report) {
+  std::vector<uint32_t> output = after_passes(spirv, passes, report);
   if (output.empty()) return {};
   output = without_stray_lines(with_debug_prints(without_marks(output)));
-  const std::string after = validate_spirv(output);
-  *messages += after;
+  const std::string after = timed_validation(output, "after", report->times);
+  report->messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};
 }
 
@@ -144,7 +174,7 @@ constexpr uint64_t kMostMarkedCalls = 2000;
 // Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
 // names its calls.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                uint64_t calls, std::string* messages) {
+                                uint64_t calls, Report* report) {
   // A block with few calls can become one with many, when the callees have calls in their turn.
   const uint32_t calls_of_block = calls <= kMostMarkedCalls ? 64 : 1;
   const std::vector<uint32_t> input =
@@ -154,20 +184,20 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
   if (marked) {
     // The first pass strips foreign sets, so it would strip the marks. A marked module does not need it,
     // because it has no other such sets.
-    std::string of_marks;
+    Report of_marks{{}, report->times};
     std::vector<uint32_t> output = valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, &of_marks);
     if (!output.empty()) return output;
   }
-  return valid_after_passes(input, passes, messages);
+  return valid_after_passes(input, passes, report);
 }
 
 // Changes array lengths from 0 to 1 when they are 0 because nobody set a specialisation constant.
 std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::string& name,
                                    Diagnostics& warnings) {
   if (!has_specialised_lengths(spirv)) return spirv;
-  std::string messages;
+  Report report;
   std::vector<std::string> names;
-  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), &messages);
+  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), &report);
   if (folded.empty()) return spirv;
   std::vector<uint32_t> output = with_positive_lengths(folded, &names);
   if (output.size() == folded.size()) return spirv;
@@ -183,31 +213,36 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
 
 namespace {
 
-std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string& name,
-                                 Diagnostics& warnings) {
+std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
+                                 PassTimes* times) {
   check_limits(spirv, name);
   const std::string before =
-      spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
+      spirv.size() < kHeaderWords ? "too short to hold a header\n" : timed_validation(spirv, "before", times);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
   const uint64_t calls = check_inlined_size(spirv, name);
-  std::string messages;
+  Report report{{}, times};
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
-    std::vector<uint32_t> output = optimised(spirv, *passes, calls, &messages);
+    std::vector<uint32_t> output = optimised(spirv, *passes, calls, &report);
     if (output.empty()) continue;
     if (!has_calls(output)) return output;
-    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, calls, &messages);
+    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, calls, &report);
     return again.empty() || has_calls(again) ? output : again;
   }
   warnings.warning({name, 0, 0},
-                   "the SPIR-V optimiser failed and the module is used unoptimised: " + messages);
+                   "the SPIR-V optimiser failed and the module is used unoptimised: " + report.messages);
   return spirv;
 }
 
 }  // namespace
 
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
+                               PassTimes* times) {
+  return with_deep_stack([&] { return simplified(std::move(spirv), name, warnings, times); });
+}
+
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
-  return with_deep_stack([&] { return simplified(std::move(spirv), name, warnings); });
+  return simplify(std::move(spirv), name, warnings, nullptr);
 }
 
 }  // namespace glint::frontend

@@ -185,6 +185,21 @@ class Contraction(ShaderTest):
 class Emission(ShaderTest):
     ARGUMENTS = ["-Iinclude", "-D", "SCALE=1", "-DLINES=0"]
 
+    def test_times_have_a_row_for_every_stage_and_pass_in_their_order(self):
+        text = self.glint("compile", "a.comp", *self.ARGUMENTS, "--time").stdout.decode()
+        lines = text.splitlines()
+        self.assertEqual((lines[0], lines[1].split()), ("a.comp", ["stage", "pass", "seconds"]))
+        rows = [line.split() for line in lines[2:]]
+        for row in rows:
+            self.assertRegex(row[-1], r"^\d+\.\d{3}$")
+        stages = [row[0] for row in rows]
+        self.assertEqual(list(dict.fromkeys(stages)), ["glslang", "validation", "optimiser", "lowering", "backend"])
+        self.assertEqual([row[1] for row in rows if row[0] == "validation"], ["before", "after"])
+        self.assertEqual([row[1] for row in rows if row[0] == "backend"],
+                         ["simplify-code", "convert-selections", "keep-predicates", "schedule", "allocate", "expand-calls", "emit"])
+        passes = [row[1] for row in rows if row[0] == "optimiser" and len(row) == 3]
+        self.assertLess(passes.index("inline-entry-points-exhaustive"), passes.index("merge-blocks"))
+
     def test_every_form_of_a_shader_compiles_to_the_same_program(self):
         self.glint("compile", "a.comp", *self.ARGUMENTS, "--emit", "spv", "-o", "a.spv")
         text = self.glint("compile", "a.comp", *self.ARGUMENTS, "--emit", "spvasm").stdout

@@ -10,6 +10,7 @@
 #include "apps/glint/options/resources.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
+#include "frontend/pass_times.h"
 #include "frontend/spirv/inline_scopes.h"
 #include "isa/text.h"
 
@@ -19,9 +20,20 @@ namespace {
 struct CompileOptions {
   std::vector<std::string> files;
   std::string emit = "isa", output, entry_point;
+  bool time = false;
   ShaderOptions shaders;
   frontend::BackendOptions backend;
 };
+
+// Returns a table of stages and passes, with the time of the optimiser's passes below that of the optimiser.
+std::string times_of(const CompileOptions& options, const std::string& file,
+                     const frontend::GlslOptions& glsl, Diagnostics& warnings) {
+  const frontend::PassTimes times = frontend::time_compilation(file, glsl, options.backend, warnings);
+  std::string out = fmt::format("{}\n{:<12} {:<36} {:>10}\n", file, "stage", "pass", "seconds");
+  for (const frontend::PassTime& row : times)
+    out += fmt::format("{:<12} {:<36} {:>10.3f}\n", row.stage, row.pass, row.seconds);
+  return out;
+}
 
 std::string text_of(const CompileOptions& options, const std::string& file, const frontend::GlslOptions& glsl,
                     Diagnostics& warnings) {
@@ -42,7 +54,8 @@ Exit compile(const CompileOptions& options) {
   glsl.entry_point = options.entry_point;
   std::string out;
   Diagnostics warnings;
-  for (const std::string& file : options.files) out += text_of(options, file, glsl, warnings);
+  for (const std::string& file : options.files)
+    out += options.time ? times_of(options, file, glsl, warnings) : text_of(options, file, glsl, warnings);
   for (const std::string& warning : warnings.messages()) fmt::print(stderr, "{}\n", warning);
   write_output(options.output, out);
   return Exit::Ok;
@@ -66,6 +79,9 @@ void add_compile(Command app, Session& session) {
       .capture_default_str();
   command.add_option("--entry", options->entry_point, "Entry point to use in a module with several")
       .type_name("NAME");
+  command.add_flag("--time", options->time,
+                   "Print the processor time of every stage and pass instead of the result; nothing is taken "
+                   "from the cache");
   add_shader_options(command, options->shaders);
   command.add_option("-o,--output", options->output, "File to write to instead of stdout").type_name("FILE");
   command
