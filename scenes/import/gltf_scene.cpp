@@ -14,6 +14,7 @@
 #include <glm/vector_relational.hpp>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -226,8 +227,13 @@ tinygltf::Model read_file(const std::string& path) {
       {is_regular_file, tinygltf::ExpandFilePath, read_whole_file, tinygltf::WriteWholeFile, nullptr});
   tinygltf::Model file;
   std::string error, warning;
-  const bool good = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
-                                           : loader.LoadASCIIFromFile(&file, &error, &warning, path);
+  bool good = false;
+  try {
+    good = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&file, &error, &warning, path)
+                                  : loader.LoadASCIIFromFile(&file, &error, &warning, path);
+  } catch (const std::out_of_range&) {
+    error = "it is damaged";  // The library looks up elements that a damaged file does not have.
+  }
   if (!good)
     throw UserError(
         {path}, fmt::format("this file cannot be read: {}", error.empty() ? "it is not glTF 2.0" : error));
