@@ -334,8 +334,8 @@ def _(t, **_):
 def _(t, desktop=None, **_):
     if desktop is None:
         raise Missing("needs --desktop")
-    wrong = [n for n in t.names() if desktop.get(n, "ipc") <= t.get(n, "ipc")]
-    return not wrong, f"mean {t.mean('ipc'):.1f} and {desktop.mean('ipc'):.1f}" + (", but not " + " ".join(wrong) if wrong else "")
+    wrong = [n for n in t.names() if desktop.get(n, "thread_ipc") <= t.get(n, "thread_ipc")]
+    return not wrong, f"mean {t.mean('thread_ipc'):.1f} and {desktop.mean('thread_ipc'):.1f}" + (", but not " + " ".join(wrong) if wrong else "")
 
 
 @statement(12, "IPC has the same trends on desktop (rank correlation above 0.7)")
@@ -343,7 +343,7 @@ def _(t, desktop=None, **_):
     if desktop is None:
         raise Missing("needs --desktop")
     names = t.names()
-    r = correlation(ranks([t.get(n, "ipc") for n in names]), ranks([desktop.get(n, "ipc") for n in names]))
+    r = correlation(ranks([t.get(n, "thread_ipc") for n in names]), ranks([desktop.get(n, "thread_ipc") for n in names]))
     return r > 0.7, f"r = {r:.2f}"
 
 

@@ -132,7 +132,7 @@ class Run:
 
     @property
     def ipc(self) -> float:
-        """Returns warp instructions per cycle of the whole GPU, as `glint run` prints it. (The metric `ipc` counts lanes.)"""
+        """Returns warp instructions per cycle of the whole GPU, as `glint run` prints it. The metric `thread_ipc` counts lanes."""
         return self.stats.sum("gpu.core[*].instructions") / self.cycles if self.cycles else 0.0
 
     @functools.cached_property

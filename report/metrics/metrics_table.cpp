@@ -13,9 +13,9 @@ constexpr Metric kGpu[] = {
      "Fig. 7 (PT)"},
     {"insn", "lane instruction", "Number of instructions that lanes executed.", "sum(core.lane_instructions)",
      ""},
-    {"ipc", "lane instruction/cycle",
+    {"thread_ipc", "lane instruction/cycle",
      "Lane instructions per cycle of the whole GPU, as in GPGPU-Sim's gpu_tot_ipc. The value is up to 32 "
-     "times the warp instructions per cycle that `glint run` shows as IPC.",
+     "times IPC, which counts warp instructions.",
      "sum(core.lane_instructions) / sum(gpu.cycles)", "Fig. 14, Fig. 6"},
     {"occupancy", "fraction", "Fraction of the warp slots that hold a resident warp.",
      "sum(core.resident_cycles) / sum(core.slot_cycles)", ""},

@@ -206,7 +206,7 @@ class Paper(unittest.TestCase):
         rows = []
         for name in check_paper.SUBSET:
             row = {"workload": name, "dram_eff": "0.6", "rt_efficiency": {"PT": "0.2", "AO": "0.4", "SH": "0.6"}[name[-2:]], "ins_alu%": "70",
-                   "ins_mem%": "20", "ins_sfu%": "1", "ins_tex%": "1", "ins_ctrl%": "7", "ins_rt%": "1", "ipc": "5"}
+                   "ins_mem%": "20", "ins_sfu%": "1", "ins_tex%": "1", "ins_ctrl%": "7", "ins_rt%": "1", "thread_ipc": "5"}
             row.update({metric: value for (workload, metric), value in changes.get("cells", {}).items() if workload == name})
             rows.append(row)
         return check_paper.Table(rows)

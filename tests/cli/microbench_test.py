@@ -1,6 +1,8 @@
 # Tests that `glint microbench` measures configurations other than the reference, and says what does not fit.
 # SPDX-License-Identifier: Apache-2.0
 """usage: microbench_test.py GLINT SOURCE_DIR"""
+import json
+
 import glint_case
 from glint_case import GlintTest
 
@@ -37,7 +39,36 @@ class Microbench(GlintTest):
         for part in ("1 benchmarks", "bar.sync 0 warps=32", "32 warps, and 16 fit"):
             self.assertIn(part, said)
 
+    def test_reads_of_the_l2_are_slower_than_l1s_and_faster_than_dram_on_any_machine(self):
+        for more in ([], ["--set", "cores=4"], ["--set", "memory.l1.size=131072"]):
+            done = self.glint("microbench", "--config", "mobile", *more, "--only", "bw L2", "--only", "bw DRAM read", "--only", "L1 .ca v4", "--format", "json")
+            values = {row["name"]: row["value"] for row in json.loads(done.stdout)}
+            cores = 4 if "cores=4" in more else 8
+            with self.subTest(more):
+                self.assertLess(values["L2 read 8MiB x128"], 0.7 * cores * values["L1 .ca v4"] * 1.365)
+                self.assertGreater(values["L2 read 8MiB x128"], 1.5 * values["DRAM read 8GiB"])
+
+    def test_an_l2_that_is_no_larger_than_the_l1s_is_not_measured_and_the_row_says_why(self):
+        self.expect(2, ["has no room for a buffer that L1s of 1048576 bytes cannot keep"],
+                    "microbench", "--config", "mobile", "--set", "memory.l1.size=1048576", "--only", "bw L2")
+
+    def test_a_result_as_csv_is_a_comparison_file_with_no_errors(self):
+        only = ["--config", "mobile", "--only", "shared chase", "--only", "L1 .ca v4"]
+        text = self.glint("microbench", *only, "--format", "csv").stdout
+        rows = [line.split(",")[:4] for line in text.splitlines()]
+        self.assertEqual(rows[0], ["group", "name", "param", "value"])
+        self.write("four.csv", "".join(",".join(row) + "\n" for row in rows))
+        self.write("more.csv", text)
+        for name in ("four.csv", "more.csv"):
+            listed = json.loads(self.glint("microbench", *only, "--compare", name, "--format", "json").stdout)
+            self.assertEqual([(row["measured"], row["error"]) for row in listed], [(float(row[3]), 0) for row in rows[1:]])
+        self.expect(2, ["short.csv:2: error: this row has 2 of 4 columns"], "microbench", *only, "--compare",
+                    self.write("short.csv", "group,name,param,value\na,b\n"))
+        other = self.expect(0, ["no row of --compare"], "microbench", *only, "--compare", self.write("other.csv", "group,name,param,value\na,b,c,1\n"))
+        self.assertIn("shared", other.stdout)
+
     def test_measuring_nothing_is_an_error(self):
+        self.expect(2, ["the groups are latency, throughput"], "microbench", "--only", "no such")
         self.expect(2, ["no benchmark"], "microbench", "--only", "no such")
         self.expect(2, ["shared memory, and a core has 0", "core.shared_bytes"], "microbench", "--config", "mobile", "--set", "core.shared_bytes=0", "--only", "shared chase")
 

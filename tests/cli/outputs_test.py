@@ -123,7 +123,7 @@ class Outputs(GlintTest):
         shader = next((ROOT / "shaders/path_tracing").glob("*.rmiss"))
         (self.folder / "run.isa").write_text(self.ok("compile", shader).stdout)
         commands = [[*RUN, "--out", "other"], [*RUN, "--json", "--out", "other"], ["describe"], ["describe", "--markdown"], ["describe", "rt"], ["describe", "gpu.cycles"],
-                    ["describe", "ipc"], *(["stats", "run", "--format", form] for form in ("txt", "csv", "json", "metrics", "vulkan-sim")),
+                    ["describe", "thread_ipc"], *(["stats", "run", "--format", form] for form in ("txt", "csv", "json", "metrics", "vulkan-sim")),
                     *(["list", what] for what in ("scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics")), ["list", "stats", "--markdown"],
                     ["annotate", "run"], ["isa"], ["isa", "fma"], ["isa", "--table", "mobile"], ["isa", "--index"], ["compile", shader], ["asm", "run.isa"],
                     ["report", "run"], ["report", "run", "-o", "-"], ["compare", "run", "run"], ["imgdiff", "run", "run"], ["model", "run", "--statistics-only"],

@@ -193,7 +193,7 @@ class Compare(ReportTest):
         self.assertNotIn("\nrays_total", done.stdout)
         self.assertIn("\nrays_total", self.glint("compare", was, now, "--all").stdout)
         self.assertEqual(self.glint("compare", was, now, "--fail-on", f"cycles<{change - 0.1:.3f}%").returncode, 0)
-        self.expect(1, ["failed: cycles<"], "compare", was, now, "--fail-on", "ipc<-99%", "--fail-on", f"cycles<{change + 0.1:.3f}%")
+        self.expect(1, ["failed: cycles<"], "compare", was, now, "--fail-on", "thread_ipc<-99%", "--fail-on", f"cycles<{change + 0.1:.3f}%")
         self.assertIn("are equal", self.glint("compare", was, was).stdout)
 
     def test_compare_lists_keys_that_differ_and_what_cycles_were_spent_on(self):
@@ -267,8 +267,8 @@ class Compare(ReportTest):
 
     def test_compare_refuses_what_it_cannot_read(self):
         run = self.runs["wknd"]
-        self.expect(2, ["METRIC<-2%"], "compare", run, run, "--fail-on", "ipc")
-        self.expect(2, ["did you mean 'ipc'"], "compare", run, run, "--fail-on", "ipcs<1%")
+        self.expect(2, ["METRIC<-2%"], "compare", run, run, "--fail-on", "thread_ipc")
+        self.expect(2, ["did you mean 'thread_ipc'"], "compare", run, run, "--fail-on", "thread_ipcs<1%")
         self.expect(2, ["nowhere"], "compare", run, "nowhere")
 
     def test_imgdiff_measures_pictures_and_draws_the_difference(self):

@@ -68,7 +68,7 @@ class Numbers(PythonTest):
         self.assertEqual([change.metric for change in mine], [name for name in printed if name in self.glint.metrics()])
 
     def test_reading_imports_nothing_but_the_standard_library(self):
-        code = "import sys, glint; r = glint.Run(sys.argv[1]); r.metrics['ipc']; r.series; r.profile; print(set(sys.modules) & {'numpy', 'pandas', 'matplotlib'})"
+        code = "import sys, glint; r = glint.Run(sys.argv[1]); r.metrics['thread_ipc']; r.series; r.profile; print(set(sys.modules) & {'numpy', 'pandas', 'matplotlib'})"
         out = subprocess.run([sys.executable, "-c", code, self.ship.directory], capture_output=True, text=True, check=True).stdout
         self.assertEqual(out.strip(), "set()")
 

@@ -46,8 +46,8 @@ std::string figures_of(const report::RunRecord& run) {
                        report::with_thousands(uint64_t(report::evaluate("sum(gpu.rays)", run).value_or(0))),
                        nodes ? fmt::format("  {:.1f} nodes/ray", *nodes) : "");
   }
-  return fmt::format("{:>11} cycles  IPC {:>6}  {:>5} nodes/ray", whole(metrics, "cycles"),
-                     shown(metrics, "ipc", 1), shown(metrics, "avg_nodes_per_ray", 1));
+  return fmt::format("{:>11} cycles  thread IPC {:>6}  {:>5} nodes/ray", whole(metrics, "cycles"),
+                     shown(metrics, "thread_ipc", 1), shown(metrics, "avg_nodes_per_ray", 1));
 }
 
 void BenchView::ended(const BenchTask& task, const Process& process, const std::string& figures) {
@@ -90,11 +90,11 @@ void BenchView::clear() {
 
 std::string summary_table(const std::vector<BenchRow>& rows) {
   std::vector<std::vector<std::string>> cells = {
-      {"", "cycles", "IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays", "nodes", "", ""},
+      {"", "cycles", "thread IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays", "nodes", "", ""},
       {"workload", "", "", "%", "%", "%", "%", "%", "", "a ray", "time", "memory"}};
   for (const BenchRow& row : rows) {
     const std::vector<report::MetricValue> m = report::metrics_of(row.run);
-    cells.push_back({row.task->workload.name(), whole(m, "cycles"), shown(m, "ipc", 1),
+    cells.push_back({row.task->workload.name(), whole(m, "cycles"), shown(m, "thread_ipc", 1),
                      shown(m, "simt_efficiency", 1, 100), shown(m, "rt_occupancy", 1, 100),
                      shown(m, "rt_efficiency", 1, 100), shown(m, "rt_miss_rate", 1, 100),
                      shown(m, "dram_util", 1, 100), whole(m, "rays_total"), shown(m, "avg_nodes_per_ray", 1),

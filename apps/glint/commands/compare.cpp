@@ -96,7 +96,7 @@ void add_compare(Command app, Session& session) {
   command.add_option("B", options->after, "Directory of the run or bench after the change").required();
   command
       .add_option("--fail-on", options->fail_on,
-                  "Exit with 1 when a metric changed by less or more than this, such as 'ipc<-2%' or "
+                  "Exit with 1 when a metric changed by less or more than this, such as 'thread_ipc<-2%' or "
                   "'cycles>1%'; repeatable")
       .allow_extra_args(false);
   command.add_flag("--all", options->all, "Print metrics that did not change, too");

@@ -7,12 +7,14 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/glint/microbench/kernel.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/session.h"
+#include "report/files/csv_field.h"
 #include "report/terminal/table.h"
 
 namespace glint::app {
@@ -21,6 +23,7 @@ namespace {
 struct MicrobenchOptions {
   std::string config = "h200";
   std::vector<std::string> settings, compare, only;
+  std::string format = "table";
 };
 
 // Holds what was measured on hardware: "group|name|param" -> value.
@@ -47,26 +50,30 @@ void set_number(Reference& out, const std::string& key, const std::string& text)
 }
 
 // Reads a file of reference values. It knows two forms by their first column: ops ("op(step)", with latency
-// and throughput of steps), and "group,name,param,value".
+// and throughput of steps), and "group,name,param,value", which may have further columns.
 void read_reference(Reference& out, const std::string& path) {
   std::ifstream in(path);
   if (!in) throw UserError({}, fmt::format("cannot read '{}'", path));
   std::string line;
   std::getline(in, line);
-  const bool ops = line.starts_with("op(step)"), groups = line.starts_with("group,");
+  const std::vector<std::string> header = split(line);
+  const bool ops = line.starts_with("op(step)"), groups = line.starts_with("group,name,param,value");
   if (!ops && !groups)
     throw UserError({path, 1, 1},
                     "expected a first line that begins with 'op(step)' or 'group,name,param,value'");
-  while (std::getline(in, line)) {
+  for (int row = 2; std::getline(in, line); ++row) {
     std::vector<std::string> cell = split(line);
     if (ops && cell.size() >= 6) {
       set_number(out, "latency|" + cell[0] + "|", cell[2]);
       set_number(out, "throughput|" + cell[0] + "|", cell[5]);
-    } else if (groups && cell.size() >= 4) {
-      // Names may have commas of their own, so the value is the last but one.
+    } else if (groups && cell.size() >= header.size()) {
+      // Names may have commas of their own, so the columns behind them are counted from the end.
+      const size_t value = cell.size() - (header.size() - 3);
       std::string name = cell[1];
-      for (size_t i = 2; i + 3 < cell.size(); ++i) name += "," + cell[i];
-      set_number(out, cell[0] + "|" + name + "|" + cell[cell.size() - 3], cell[cell.size() - 2]);
+      for (size_t i = 2; i + 1 < value; ++i) name += "," + cell[i];
+      set_number(out, cell[0] + "|" + name + "|" + cell[value - 1], cell[value]);
+    } else if (groups && line.find_first_not_of(" \r") != std::string::npos) {
+      throw UserError({path, row}, fmt::format("this row has {} of {} columns", cell.size(), header.size()));
     }
   }
 }
@@ -95,21 +102,66 @@ std::optional<double> measure(const MicroBench& bench, const pipeline::GpuParams
   }
 }
 
-std::vector<std::string> row_of(const MicroBench& bench, double value, const Reference& reference,
-                                std::map<std::string, ErrorSums>& sums) {
-  std::vector<std::string> cells{bench.group, bench.name, bench.param, fmt::format("{:.2f}", value),
-                                 bench.unit};
-  const auto at = reference.find(bench.group + "|" + bench.name + "|" + bench.param);
-  if (at == reference.end()) return cells;
-  const double error = value / at->second - 1;
-  ErrorSums& sum = sums[bench.group];
-  ++sum.compared;
-  sum.within5 += std::abs(error) <= 0.05;
-  sum.within10 += std::abs(error) <= 0.10;
-  sum.error += std::abs(error);
-  cells.push_back(fmt::format("{:.2f}", at->second));
-  cells.push_back(fmt::format("{:+.1f} %", error * 100));
-  return cells;
+// Holds one row of the result. Numbers are absent where nothing was measured or nothing is known.
+struct Row {
+  const MicroBench* bench = nullptr;
+  std::optional<double> value, reference;
+  std::optional<double> error() const {
+    return value && reference ? std::optional(*value / *reference - 1) : std::nullopt;
+  }
+};
+
+std::map<std::string, ErrorSums> sums_of(const std::vector<Row>& rows) {
+  std::map<std::string, ErrorSums> sums;
+  for (const Row& row : rows)
+    if (const std::optional<double> error = row.error()) {
+      ErrorSums& sum = sums[row.bench->group];
+      ++sum.compared;
+      sum.within5 += std::abs(*error) <= 0.05;
+      sum.within10 += std::abs(*error) <= 0.10;
+      sum.error += std::abs(*error);
+    }
+  return sums;
+}
+
+void print_table(const std::vector<Row>& rows, const MicrobenchOptions& options) {
+  std::vector<std::vector<std::string>> cells{{"group", "name", "parameter", options.config, "unit"}};
+  if (!options.compare.empty()) cells[0].insert(cells[0].end(), {"measured", "error"});
+  for (const Row& row : rows) {
+    cells.push_back({row.bench->group, row.bench->name, row.bench->param,
+                     row.value ? fmt::format("{:.2f}", *row.value) : "-", row.bench->unit});
+    if (row.error())
+      cells.back().insert(cells.back().end(), {fmt::format("{:.2f}", *row.reference),
+                                               fmt::format("{:+.1f} %", *row.error() * 100)});
+  }
+  print_output("{}", report::table(cells, "<<<><>>"));
+}
+
+// The columns are those that `--compare` reads, and more behind them.
+void print_csv(const std::vector<Row>& rows) {
+  const auto number = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
+  std::string text = "group,name,param,value,unit,measured,error\n";
+  for (const Row& row : rows)
+    text += fmt::format("{},{},{},{},{},{},{}\n", report::csv_field(row.bench->group),
+                        report::csv_field(row.bench->name), report::csv_field(row.bench->param),
+                        number(row.value), report::csv_field(row.bench->unit), number(row.reference),
+                        number(row.error()));
+  print_output("{}", text);
+}
+
+void print_json(const std::vector<Row>& rows) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Row& row : rows) {
+    nlohmann::ordered_json one = {{"group", row.bench->group},
+                                  {"name", row.bench->name},
+                                  {"param", row.bench->param},
+                                  {"value", nullptr},
+                                  {"unit", row.bench->unit}};
+    if (row.value) one["value"] = *row.value;
+    if (row.error()) one["measured"] = *row.reference, one["error"] = *row.error();
+    list.push_back(std::move(one));
+  }
+  print_output("{}\n", list.dump(1));
 }
 
 void print_sums(const std::map<std::string, ErrorSums>& sums) {
@@ -122,31 +174,50 @@ void print_sums(const std::map<std::string, ErrorSums>& sums) {
   print_output("\n{}", report::table(rows, "<>>>>"));
 }
 
+std::vector<MicroBench> all_benchmarks() {
+  std::vector<MicroBench> all;
+  for (auto& list : {op_benchmarks(), memory_benchmarks(), flow_benchmarks()})
+    all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+std::string group_names() {
+  std::vector<std::string> names;
+  for (const MicroBench& bench : all_benchmarks())
+    if (std::find(names.begin(), names.end(), bench.group) == names.end()) names.push_back(bench.group);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 Exit microbench(const Session& session, const MicrobenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   Reference reference;
   for (const std::string& path : options.compare) read_reference(reference, path);
-  std::vector<std::vector<std::string>> rows{{"group", "name", "parameter", options.config, "unit"}};
-  if (!options.compare.empty()) rows[0].insert(rows[0].end(), {"measured", "error"});
-  std::map<std::string, ErrorSums> sums;
+  const std::vector<MicroBench> benches = all_benchmarks();
+  std::vector<Row> rows;
   Skipped skipped;
-  for (const auto& list : {op_benchmarks(), memory_benchmarks(), flow_benchmarks()})
-    for (const MicroBench& bench : list) {
-      if (!wanted(bench, options.only)) continue;
-      if (session.on_terminal) fmt::print(stderr, "\r\033[K{} {} {}", bench.group, bench.name, bench.param);
-      const std::optional<double> value = measure(bench, gpu, skipped);
-      rows.push_back(value ? row_of(bench, *value, reference, sums)
-                           : std::vector<std::string>{bench.group, bench.name, bench.param, "-", bench.unit});
-    }
+  for (const MicroBench& bench : benches) {
+    if (!wanted(bench, options.only)) continue;
+    if (session.on_terminal) fmt::print(stderr, "\r\033[K{} {} {}", bench.group, bench.name, bench.param);
+    const auto at = reference.find(bench.group + "|" + bench.name + "|" + bench.param);
+    rows.push_back({&bench, measure(bench, gpu, skipped),
+                    at == reference.end() ? std::nullopt : std::optional(at->second)});
+  }
   if (session.on_terminal) fmt::print(stderr, "\r\033[K");
-  if (rows.size() == 1) throw UserError({}, "no benchmark has this text in its group, name or parameter");
-  print_output("{}", report::table(rows, "<<<><>>"));
-  print_sums(sums);
+  if (rows.empty())
+    throw UserError({}, "no benchmark has this text in its group, name or parameter",
+                    "the groups are " + group_names());
+  const std::map<std::string, ErrorSums> sums = sums_of(rows);
+  if (!options.compare.empty() && sums.empty())
+    fmt::print(stderr,
+               "warning: no row of --compare has the group, name and parameter of a benchmark here\n");
+  if (options.format == "csv") print_csv(rows);
+  if (options.format == "json") print_json(rows);
+  if (options.format == "table") print_table(rows, options), print_sums(sums);
   for (const auto& [reason, names] : skipped)
     fmt::print(stderr, "\n{} benchmarks (-) were not run, the first of them '{}':\n{}\n", names.size(),
                names.front(), reason);
   const bool measured =
-      std::any_of(rows.begin() + 1, rows.end(), [](const auto& row) { return row[3] != "-"; });
+      std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.value.has_value(); });
   return measured ? Exit::Ok : Exit::UserInput;
 }
 
@@ -163,8 +234,13 @@ void add_microbench(Command app, Session& session) {
                   "CSV file with a real part's values, which are shown beside the measured ones")
       .type_name("FILE");
   command
-      .add_option("--only", options->only, "Run only benchmarks with this text in group, name or parameter")
+      .add_option(
+          "--only", options->only,
+          "Run only benchmarks with this text in group, name or parameter; the groups are " + group_names())
       .type_name("TEXT");
+  command.add_option("--format", options->format, "Selects the form of the result")
+      .one_of({"table", "csv", "json"})
+      .capture_default_str();
   command.callback([&session, options] {
     session.action = [&session, options] { return microbench(session, *options); };
   });

@@ -1,10 +1,12 @@
 // Measures latencies and bandwidths of memory: pointer chases, conflicts, coalescing, streams, atomics.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 #include <utility>
 
 #include "apps/glint/microbench/kernel.h"
+#include "base/diagnostics.h"
 
 namespace glint::app {
 namespace {
@@ -109,28 +111,74 @@ double l1_latency(uint32_t stride, const pipeline::GpuParams& gpu) {
 const std::string kThread =
     "mov.u32 %r1,%ctaid.x;mov.u32 %r2,%ntid.x;mov.u32 %r3,%tid.x;mad.lo.u32 %r1,%r1,%r2,%r3;\n";
 
-// Returns the GB/s of all cores over `bytes` (a power of two), with each word read once per pass.
-double stream(uint64_t bytes, bool warm, const pipeline::GpuParams& gpu) {
-  MicroKernel kernel;
-  kernel.bytes = bytes;
-  kernel.threads = full_block(gpu);
-  kernel.blocks = gpu.cores * 2;
-  const uint64_t threads = uint64_t{kernel.blocks} * kernel.threads;
-  const uint32_t loads = 4, turns = uint32_t(std::max<uint64_t>(bytes / (threads * 16 * loads), 1));
-  // In turn t, load i of thread g reads word g of the part (t * loads + i) of the buffer. Each part is as
-  // long as the grid.
-  kernel.before = kThread + fmt::format("mul.wide.u32 %rd2,%r1,16;mov.u64 %rd3,{};\n", bytes - 1);
-  const std::string place =
-      fmt::format("and.b64 %rd4,%rd2,%rd3;add.s64 %rd4,%rd4,%rd0;add.s64 %rd2,%rd2,{};\n", threads * 16);
-  const std::string load = "ld.global.v4.u32 {%r2#,%r3#,%r4#,%r5#},[%rd4];\n";
-  kernel.body = place + load;
-  kernel.unroll = loads;
+constexpr uint32_t kLoads = 4;  // loads of 16 bytes that a thread does in a turn of a stream
+
+// Returns the GB/s of all cores that read a buffer of `bytes`, from the cycles of a turn of the kernel. The
+// body of the kernel adds `step` to %rd2 after each load, and the mask keeps %rd2 inside of the buffer.
+double read_stream(MicroKernel kernel, uint64_t step, uint32_t few, uint32_t many,
+                   const pipeline::GpuParams& gpu) {
+  kernel.before += fmt::format("mov.u64 %rd3,{};\n", kernel.bytes - 1);
+  kernel.body = fmt::format("and.b64 %rd4,%rd2,%rd3;add.s64 %rd4,%rd4,%rd0;add.s64 %rd2,%rd2,{};\n", step);
+  kernel.body += "ld.global.v4.u32 {%r2#,%r3#,%r4#,%r5#},[%rd4];\n";
+  kernel.unroll = kLoads;
   kernel.after =
       "xor.b32 %r4,%r20,%r21;xor.b32 %r5,%r22,%r23;xor.b32 %r4,%r4,%r5;setp.eq.u32 %p1,%r4,12345;@%p1 "
       "st.global.u32 [%rd0],%r4;\n";
-  const uint32_t few = warm ? turns : std::max(turns / 2, 1u), many = warm ? turns * 3 : few * 2;
-  const double cycles = cycles_per_turn(kernel, few, many, gpu);
-  return double(threads * 16 * loads) / cycles * gpu.clock_mhz * 1e-3;
+  const double bytes = double(uint64_t{kernel.blocks} * kernel.threads * 16 * kLoads);
+  return bytes / cycles_per_turn(kernel, few, many, gpu) * gpu.clock_mhz * 1e-3;
+}
+
+MicroKernel full_grid(const pipeline::GpuParams& gpu) {
+  MicroKernel kernel;
+  kernel.threads = full_block(gpu);
+  kernel.blocks = gpu.cores * 2;
+  return kernel;
+}
+
+// Returns the GB/s of all cores over `bytes` (a power of two), with each word read once.
+double dram_stream(uint64_t bytes, const pipeline::GpuParams& gpu) {
+  MicroKernel kernel = full_grid(gpu);
+  kernel.bytes = bytes;
+  // In turn t, load i of thread g reads word g of the part (t * loads + i) of the buffer. Each part is as
+  // long as the grid.
+  const uint64_t grid = uint64_t{kernel.blocks} * kernel.threads * 16;
+  kernel.before = kThread + "mul.wide.u32 %rd2,%r1,16;\n";
+  const auto turns = uint32_t(std::max<uint64_t>(bytes / (grid * kLoads) / 2, 1));
+  return read_stream(kernel, grid, turns, turns * 2, gpu);
+}
+
+// Returns how many blocks' shares a block moves on after each load, so that a core comes back to a line as
+// late as possible. `buffer` is the number of shares in the buffer, a power of two. An odd step visits all of
+// them. `distance` becomes the loads of a block before its core, which has a second block `cores` shares
+// further on, meets a share again.
+uint64_t late_step(uint64_t cores, uint64_t buffer, uint64_t& distance) {
+  uint64_t best = 1;
+  distance = 0;
+  for (uint64_t step = 2 * cores + 1; step < 2 * cores + 32; step += 2)
+    for (uint64_t loads = 1; loads <= buffer; ++loads) {
+      const uint64_t place = loads * step % buffer, other = cores % buffer;
+      if (place != 0 && place != other && place != (buffer - other) % buffer) continue;
+      if (loads > distance) distance = loads, best = step;
+      break;
+    }
+  return best;
+}
+
+// Returns the GB/s of all cores over a buffer that lies in the L2 and in no L1.
+double l2_stream(const pipeline::GpuParams& gpu) {
+  constexpr uint64_t kMost = 8 << 20;  // bytes, as on the hardware that `--compare` is about
+  const uint64_t l1 = gpu.memory.l1.size, l2 = gpu.memory.num_slices() * gpu.memory.l2.slice_size;
+  MicroKernel kernel = full_grid(gpu);
+  const uint64_t share = uint64_t{kernel.threads} * 16;
+  kernel.bytes = std::min(kMost, std::bit_floor(l2 / 2));
+  uint64_t distance = 0;
+  const uint64_t step = late_step(gpu.cores, std::max<uint64_t>(kernel.bytes / share, 1), distance);
+  if (kernel.bytes < share || 2 * distance * share < 2 * l1)
+    throw UserError(
+        fmt::format("an L2 of {} bytes has no room for a buffer that L1s of {} bytes cannot keep", l2, l1));
+  kernel.before = kThread + "mul.wide.u32 %rd2,%r1,16;\n";
+  const auto lap = uint32_t(kernel.bytes / (share * kernel.blocks * kLoads)) + 1;
+  return read_stream(kernel, step * share, 2 * lap, 4 * lap, gpu);
 }
 
 // Returns the GB/s of writes back to DRAM. What the L2 holds when the launch ends stays there, so both
@@ -226,10 +274,9 @@ void add_bandwidths(std::vector<MicroBench>& out) {
     out.push_back({"smbw", "shared " + w, "threads=1024", "B/cycle",
                    [w, b](const auto& gpu) { return 32 * b / shared_throughput(b, w, gpu); }});
   }
+  out.push_back({"bw", "L2 read 8MiB x128", "", "GB/s", [](const auto& gpu) { return l2_stream(gpu); }});
   out.push_back(
-      {"bw", "L2 read 8MiB x128", "", "GB/s", [](const auto& gpu) { return stream(8 << 20, true, gpu); }});
-  out.push_back(
-      {"bw", "DRAM read 8GiB", "", "GB/s", [](const auto& gpu) { return stream(64 << 20, false, gpu); }});
+      {"bw", "DRAM read 8GiB", "", "GB/s", [](const auto& gpu) { return dram_stream(64 << 20, gpu); }});
   out.push_back({"bw", "DRAM write 8GiB", "", "GB/s", write_stream});
 }
 

@@ -109,7 +109,7 @@ TEST_CASE("a row of metrics.csv has as many cells as its header, and its figures
   CHECK(found["workload"] == "SHIP_SH");
   CHECK(found["scene"] == "SHIP");
   CHECK(found["cycles"] == "200");
-  CHECK(found["ipc"] == "2");
+  CHECK(found["thread_ipc"] == "2");
   CHECK(found["bvh_depth"] == "12");
   CHECK(found["rt_miss_rate"] == "0.25");
   CHECK(found["max_nodes_per_ray"] == "9");

@@ -90,10 +90,10 @@ TEST_CASE("metrics that only one run has are named") {
   cut.add_stats("path,value,unit,doc\ngpu.cycles,900,cycle,\n", "stats.csv");
   const std::string text = report::uncompared_text(run("1000", "3000"), cut);
 
-  CHECK(text.find("metrics are only in A: insn, ipc") != std::string::npos);
+  CHECK(text.find("metrics are only in A: insn, thread_ipc") != std::string::npos);
   CHECK(text.find("only B") == std::string::npos);
   CHECK(text.find("cycles") == std::string::npos);
-  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics are only in B: insn, ipc") !=
+  CHECK(report::uncompared_text(cut, run("1000", "3000")).find("metrics are only in B: insn, thread_ipc") !=
         std::string::npos);
   CHECK(report::uncompared_text(cut, cut) == "");
 }
@@ -106,10 +106,10 @@ TEST_CASE("changes are relative to the first run, and the largest comes first") 
                          [&](const auto& c) { return c.metric->name == name; });
   };
   CHECK(*of("cycles").relative == Approx(-0.1));
-  CHECK(*of("ipc").relative == Approx(1.0 / 9));
+  CHECK(*of("thread_ipc").relative == Approx(1.0 / 9));
   CHECK(*of("insn").relative == 0);
   CHECK(changes.front().metric->name != "insn");
-  CHECK(changes.back().metric->name != "ipc");
+  CHECK(changes.back().metric->name != "thread_ipc");
 }
 
 TEST_CASE("a condition holds on one side of its bound only") {
@@ -117,14 +117,14 @@ TEST_CASE("a condition holds on one side of its bound only") {
 
   CHECK(report::holds(report::parse_condition("cycles<-9%"), changes));
   CHECK_FALSE(report::holds(report::parse_condition("cycles<-11%"), changes));
-  CHECK(report::holds(report::parse_condition("ipc>+11%"), changes));
-  CHECK_FALSE(report::holds(report::parse_condition("ipc>12%"), changes));
+  CHECK(report::holds(report::parse_condition("thread_ipc>+11%"), changes));
+  CHECK_FALSE(report::holds(report::parse_condition("thread_ipc>12%"), changes));
   CHECK_FALSE(report::holds(report::parse_condition("insn<0%"), changes));
   CHECK_THROWS_AS(report::holds(report::parse_condition("dram_util<0%"), changes), UserError);
 }
 
 TEST_CASE("a condition that is none is refused with the form that is expected") {
-  for (const char* text : {"ipc", "ipc<2", "<2%", "ipc<x%", "ipc<%", "ipc<nan%", "ipc>inf%", "ipcc<2%"})
+  for (const char* text : {"thread_ipc", "thread_ipc<2", "<2%", "thread_ipc<x%", "thread_ipc<%", "thread_ipc<nan%", "thread_ipc>inf%", "ipcc<2%"})
     CHECK_THROWS_AS(report::parse_condition(text), UserError);
 }
 
