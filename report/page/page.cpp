@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kLastColumns =
     "<th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead>\n";
 constexpr std::string_view kKeyMetrics[] = {
-    "cycles",    "thread_ipc",          "simt_efficiency", "l1d_miss_rate", "l2_miss_rate",
+    "cycles",    "thread_ipc",   "simt_efficiency", "l1d_miss_rate", "l2_miss_rate",
     "dram_util", "rt_occupancy", "rt_efficiency",   "rays_total",    "avg_nodes_per_ray"};
 
 std::string title_of(const Json& run) {

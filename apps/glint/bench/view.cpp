@@ -90,7 +90,8 @@ void BenchView::clear() {
 
 std::string summary_table(const std::vector<BenchRow>& rows) {
   std::vector<std::vector<std::string>> cells = {
-      {"", "cycles", "thread IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays", "nodes", "", ""},
+      {"", "cycles", "thread IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays", "nodes", "",
+       ""},
       {"workload", "", "", "%", "%", "%", "%", "%", "", "a ray", "time", "memory"}};
   for (const BenchRow& row : rows) {
     const std::vector<report::MetricValue> m = report::metrics_of(row.run);

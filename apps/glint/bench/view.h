@@ -34,8 +34,8 @@ class BenchView {
   int drawn_ = 0;  // lines drawn below the finished ones
 };
 
-// Returns the figures of a finished run, such as "376 565 cycles  thread IPC 132.9  43.3 nodes/ray". A functional
-// run has fewer.
+// Returns the figures of a finished run, such as "376 565 cycles  thread IPC 132.9  43.3 nodes/ray". A
+// functional run has fewer.
 std::string figures_of(const report::RunRecord& run);
 
 // Holds a row of the table at the end, which has one for each workload with results.

@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "apps/glint/microbench/kernel.h"
 #include "apps/glint/options/command_line.h"

@@ -124,7 +124,8 @@ TEST_CASE("a condition holds on one side of its bound only") {
 }
 
 TEST_CASE("a condition that is none is refused with the form that is expected") {
-  for (const char* text : {"thread_ipc", "thread_ipc<2", "<2%", "thread_ipc<x%", "thread_ipc<%", "thread_ipc<nan%", "thread_ipc>inf%", "ipcc<2%"})
+  for (const char* text : {"thread_ipc", "thread_ipc<2", "<2%", "thread_ipc<x%", "thread_ipc<%",
+                           "thread_ipc<nan%", "thread_ipc>inf%", "ipcc<2%"})
     CHECK_THROWS_AS(report::parse_condition(text), UserError);
 }
 
