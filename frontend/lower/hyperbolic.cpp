@@ -18,7 +18,7 @@ constexpr float kAsinh[] = {-0.1666666567325592f, 0.0749988928437233f,   -0.0446
                             0.0300129521638155f,  -0.01997998356819153f, 0.009167712181806564f};
 constexpr float kTanhReach = 0.6f, kAsinhReach = 0.5f;
 
-Operand odd(Emitter& e, Operand x, std::span<const float> coefficients) {
+Operand odd_series(Emitter& e, Operand x, std::span<const float> coefficients) {
   return math::odd(e, x, e.mul(x, x), coefficients);
 }
 
@@ -50,7 +50,7 @@ Operand sinh(Emitter& e, Operand x) {
   const Operand magnitude = abs(e, x);
   const Operand half = half_exp(e, magnitude);
   const Operand large = e.sub(half, e.div(constant_f32(0.25f), half));
-  return e.select(less(e, magnitude, 1), odd(e, x, kSinh), with_sign(e, large, x));
+  return e.select(less(e, magnitude, 1), odd_series(e, x, kSinh), with_sign(e, large, x));
 }
 
 Operand cosh(Emitter& e, Operand x) {
@@ -63,7 +63,7 @@ Operand tanh(Emitter& e, Operand x) {
   const Operand magnitude = abs(e, x);
   const Operand power = e.value("ex2.f32", {e.mul(magnitude, constant_f32(2 * kLog2E))});
   const Operand large = e.sub(constant_f32(1), e.div(constant_f32(2), e.add(power, constant_f32(1))));
-  return e.select(less(e, magnitude, kTanhReach), odd(e, x, kTanh), with_sign(e, large, x));
+  return e.select(less(e, magnitude, kTanhReach), odd_series(e, x, kTanh), with_sign(e, large, x));
 }
 
 // Uses ln(x + sqrt(x^2 + 1)) = log1p(x + x^2 / (1 + sqrt(x^2 + 1))).
@@ -75,7 +75,7 @@ Operand asinh(Emitter& e, Operand x) {
   const Operand is_huge = e.value("setp.gt.f32", {magnitude, constant_f32(kHuge)});
   const Operand large =
       log1p(e, e.select(is_huge, magnitude, u), e.select(is_huge, constant_f32(1), constant_f32(0)));
-  return e.select(less(e, magnitude, kAsinhReach), odd(e, x, kAsinh), with_sign(e, large, x));
+  return e.select(less(e, magnitude, kAsinhReach), odd_series(e, x, kAsinh), with_sign(e, large, x));
 }
 
 // With t = x - 1, uses ln(x + sqrt(x^2 - 1)) = log1p(t + sqrt(t (t + 2))).
