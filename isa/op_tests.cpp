@@ -29,20 +29,20 @@ constexpr EffectTest kTests[] = {
     {Effect::Exit, "tests/ops/control.cpp"},
     {Effect::Return, "tests/ops/control.cpp"},
     {Effect::Trap, "tests/ops/control.cpp"},
-    {Effect::CallCandidate, ""},
-    {Effect::CallAnyHit, ""},
-    {Effect::CallHit, ""},
-    {Effect::CallCallable, ""},
-    {Effect::Trace, ""},
-    {Effect::Resume, ""},
-    {Effect::Report, ""},
-    {Effect::Accepted, ""},
-    {Effect::Ignore, ""},
-    {Effect::Terminate, ""},
-    {Effect::EndTrace, ""},
+    {Effect::CallCandidate, "tests/ops/ray_tracing.cpp"},
+    {Effect::CallAnyHit, "tests/ops/ray_tracing.cpp"},
+    {Effect::CallHit, "tests/ops/ray_tracing.cpp"},
+    {Effect::CallCallable, "tests/ops/callable.cpp"},
+    {Effect::Trace, "tests/ops/ray_tracing.cpp"},
+    {Effect::Resume, "tests/ops/ray_tracing.cpp"},
+    {Effect::Report, "tests/ops/ray_tracing.cpp"},
+    {Effect::Accepted, "tests/ops/ray_tracing.cpp"},
+    {Effect::Ignore, "tests/ops/ray_tracing.cpp"},
+    {Effect::Terminate, "tests/ops/ray_tracing.cpp"},
+    {Effect::EndTrace, "tests/ops/ray_tracing.cpp"},
     {Effect::Query, "tests/ops/ray_query.cpp"},
     {Effect::QueryProceed, "tests/ops/ray_query.cpp"},
-    {Effect::HitObject, ""},
+    {Effect::HitObject, "tests/ops/hit_object.cpp"},
     {Effect::Barrier, "tests/ops/control.cpp"},
     {Effect::Print, "tests/ops/control.cpp"},
     {Effect::PrintPart, "tests/ops/control.cpp"},
@@ -52,10 +52,10 @@ static_assert(std::size(kTests) == size_t(Effect::Count));
 static_assert(
     [] {
       for (size_t i = 0; i < std::size(kTests); ++i)
-        if (kTests[i].effect != Effect(i)) return false;
+        if (kTests[i].effect != Effect(i) || kTests[i].file.empty()) return false;
       return true;
     }(),
-    "the rows have the order of the enum");
+    "the rows have the order of the enum, and each has a test");
 
 }  // namespace
 

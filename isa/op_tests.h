@@ -8,8 +8,7 @@
 namespace glint::isa {
 
 // Returns the file of the test that executes the op and compares its result with an oracle: the examples of a
-// value op, or the oracle of an effect. tests/ops/coverage_test.cpp runs these oracles on every row. The text
-// is empty where there is no such test.
+// value op, or the oracle of an effect. tests/ops/coverage_test.cpp runs these oracles on every row.
 std::string_view test_of(const OpRow& row);
 
 }  // namespace glint::isa

@@ -16,8 +16,11 @@ using Oracle = uint64_t (*)(const isa::OpRow& row);
 uint64_t check_access(const isa::OpRow& row);
 uint64_t check_atomic(const isa::OpRow& row);
 uint64_t check_control(const isa::OpRow& row);
+uint64_t check_callable(const isa::OpRow& row);
+uint64_t check_hit_object(const isa::OpRow& row);
 uint64_t check_image_query(const isa::OpRow& row);
 uint64_t check_ray_query(const isa::OpRow& row);
+uint64_t check_ray_tracing(const isa::OpRow& row);
 uint64_t check_surface(const isa::OpRow& row);
 uint64_t check_texture(const isa::OpRow& row);
 
@@ -27,10 +30,11 @@ struct OracleFile {
   Oracle check;
 };
 inline constexpr OracleFile kOracles[] = {
-    {"tests/ops/access.cpp", &check_access},       {"tests/ops/atomic.cpp", &check_atomic},
-    {"tests/ops/control.cpp", &check_control},     {"tests/ops/image_query.cpp", &check_image_query},
-    {"tests/ops/ray_query.cpp", &check_ray_query}, {"tests/ops/surface.cpp", &check_surface},
-    {"tests/ops/texture.cpp", &check_texture},
+    {"tests/ops/access.cpp", &check_access},         {"tests/ops/atomic.cpp", &check_atomic},
+    {"tests/ops/callable.cpp", &check_callable},     {"tests/ops/control.cpp", &check_control},
+    {"tests/ops/hit_object.cpp", &check_hit_object}, {"tests/ops/image_query.cpp", &check_image_query},
+    {"tests/ops/ray_query.cpp", &check_ray_query},   {"tests/ops/ray_tracing.cpp", &check_ray_tracing},
+    {"tests/ops/surface.cpp", &check_surface},       {"tests/ops/texture.cpp", &check_texture},
 };
 
 }  // namespace glint::test

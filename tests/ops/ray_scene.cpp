@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/ops/ray_scene.h"
 
+#include <charconv>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,12 +16,12 @@ namespace {
 
 struct Placed {
   std::array<double, 12> matrix;
-  uint32_t custom, sbt_offset, flags;
+  uint32_t custom, mask, sbt_offset, flags;
 };
 constexpr Placed kPlaced[RayScene::kInstances] = {
-    {{0.75, -0.5, 0, 1, 0.5, 0.75, 0, 2, 0, 0.25, 1.5, -3}, 1000, 5, 0},
-    {{1, 0.25, 0, 0, 0, 2, 0, 100, 0, 0, 1, 7}, 0xabcdef, 9, 0},
-    {{-1, 0, 0.125, 3, 0, 1.25, 0, -100, 0.25, 0, -0.5, 20}, 77, 0x123456, rt::instance_flag::kFlipFacing}};
+    {{0.75, -0.5, 0, 1, 0.5, 0.75, 0, 2, 0, 0.25, 1.5, -3}, 1000, 0x0f, 5, 0},
+    {{1, 0.25, 0, 0, 0, 2, 0, 100, 0, 0, 1, 7}, 0xabcdef, 0x3c, 9, 0},
+    {{-1, 0, 0.125, 3, 0, 1.25, 0, -100, 0.25, 0, -0.5, 20}, 77, 0xf0, 0, rt::instance_flag::kFlipFacing}};
 
 // Primitives stand four units apart, so that a steep ray meets one of them only.
 double middle_of(uint32_t geometry, uint32_t primitive) {
@@ -58,6 +60,13 @@ rt::StructureInfo build_boxes(mem::AddressSpace& memory) {
   return rt::build_bottom(memory, "boxes", level, {});
 }
 
+size_t number_of(std::string_view text) {
+  if (text == "x" || text == "y" || text == "z") return size_t(text[0] - 'x');
+  size_t out = 0;
+  std::from_chars(text.data(), text.data() + text.size(), out);
+  return out;
+}
+
 }  // namespace
 
 Point transformed(const std::array<double, 12>& matrix, const Point& point, double w) {
@@ -83,7 +92,41 @@ std::array<double, 12> inverse_of(const std::array<double, 12>& matrix) {
   return out;
 }
 
-RayScene::RayScene(mem::AddressSpace& memory) {
+std::optional<Value> value_of_ray(std::span<const std::string_view> words, const Aim& aim) {
+  if (words[0] == "tmin") return real(aim.tmin);
+  if (words[0] == "origin") return real(aim.origin[number_of(words[1])]);
+  if (words[0] == "direction") return real(aim.direction[number_of(words[1])]);
+  return std::nullopt;
+}
+
+std::optional<Value> value_of_instance(std::span<const std::string_view> words, const Aim& aim) {
+  const auto inverse = inverse_of(aim.to_world);
+  if (words[0] == "instance") return integer(aim.instance);
+  if (words[0] == "custom") return integer(aim.custom);
+  if (words[0] == "sbt_offset") return integer(aim.sbt_offset);
+  if (words[0] == "geometry") return integer(aim.geometry);
+  if (words[0] == "primitive") return integer(aim.primitive);
+  if (words[0] == "object_to_world") return real(aim.to_world[number_of(words[1])]);
+  if (words[0] == "world_to_object") return real(inverse[number_of(words[1])]);
+  if (words[0] != "object") return std::nullopt;
+  const bool is_origin = words[1] == "origin";
+  return real(transformed(inverse, is_origin ? aim.origin : aim.direction, is_origin)[number_of(words[2])]);
+}
+
+Value value_of_corner(std::string_view number, const Aim& aim) {
+  return real(aim.corner[number_of(number) / 3][number_of(number) % 3]);
+}
+
+bool Value::is(uint32_t word) const {
+  if (!is_float) return double(word) == number;
+  return std::fabs(value_of(kSingle, word) - number) <= 1e-4 * (1 + std::fabs(number));
+}
+
+uint32_t RayScene::sbt_offset_of(uint32_t instance) const {
+  return instance + 1 == kInstances ? last_sbt_offset_ : kPlaced[instance].sbt_offset;
+}
+
+RayScene::RayScene(mem::AddressSpace& memory, uint32_t last_sbt_offset) : last_sbt_offset_(last_sbt_offset) {
   std::vector<std::array<float, 3>> positions;
   std::vector<uint32_t> indices[kGeometries];
   for (uint32_t g = 0; g < kGeometries; ++g)
@@ -109,7 +152,8 @@ RayScene::RayScene(mem::AddressSpace& memory) {
                                                build_boxes(memory)};
   std::vector<rt::Instance> instances;
   for (uint32_t i = 0; i < kInstances; ++i) {
-    rt::Instance instance{{}, kPlaced[i].custom, 0xff, kPlaced[i].sbt_offset, kPlaced[i].flags, has_boxes(i)};
+    rt::Instance instance{{},          kPlaced[i].custom, kPlaced[i].mask, sbt_offset_of(i), kPlaced[i].flags,
+                          has_boxes(i)};
     for (size_t n = 0; n < 12; ++n) instance.transform[n] = float(kPlaced[i].matrix[n]);
     instances.push_back(instance);
   }
@@ -124,7 +168,8 @@ Aim RayScene::aim(Random& random, bool must_hit) const {
   out.instance = random.below(kInstances), out.geometry = random.below(kGeometries),
   out.primitive = random.below(kPrimitives);
   const Placed& placed = kPlaced[out.instance];
-  out.custom = placed.custom, out.sbt_offset = placed.sbt_offset, out.to_world = placed.matrix;
+  out.custom = placed.custom, out.mask = placed.mask, out.to_world = placed.matrix;
+  out.sbt_offset = sbt_offset_of(out.instance);
   out.is_box = has_boxes(out.instance);
   out.is_opaque = out.is_box && out.geometry == 0;
   out.corner = triangles_[out.geometry][out.primitive];

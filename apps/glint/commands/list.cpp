@@ -85,7 +85,7 @@ Rows test_rows() {
   Rows rows;
   for (const isa::OpRow& row : isa::op_table()) {
     const std::string_view test = isa::test_of(row);
-    rows.push_back({std::string(row.name), test.empty() ? "none" : std::string(test),
+    rows.push_back({std::string(row.name), std::string(test),
                     row.examples.count ? fmt::format("{} examples", row.examples.count) : ""});
   }
   return rows;
