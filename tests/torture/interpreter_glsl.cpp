@@ -85,7 +85,7 @@ bool float_function(uint32_t function, const std::array<uint64_t, 3>& bits, uint
       result = smaller(larger(a, b), c);
       break;
     case GLSLstd450FMix:
-      result = std::fma(b, c, a * (1 - c));
+      result = std::fma(c, b - a, a);
       break;
     case GLSLstd450Step:
       result = b < a ? 0.0f : 1.0f;

@@ -10,6 +10,7 @@
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
+#include "apps/glint/options/run_files.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/interval/interval_machine.h"
@@ -105,6 +106,7 @@ double run_interval(const Session& session, const ModelOptions& options, const r
 report::ModelRow row_of(const Session& session, const ModelOptions& options, bool with_interval,
                         const std::string& workload, const std::string& directory) {
   const report::RunRecord run = report::RunRecord::read(directory);
+  tell_of_files({directory});
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
   const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
