@@ -13,6 +13,10 @@ if(TARGET glint)
     add_test(NAME cli_whole_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/whole_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  foreach(suite Scenes Texts RunFiles)
+    add_test(NAME cli_damaged_${suite}
+      COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/mutation_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
   foreach(suite CommandLines Shaders)
     add_test(NAME cli_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/messages_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
