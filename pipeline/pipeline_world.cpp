@@ -240,6 +240,10 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
       rt::Instance instance = d.instance;
       for (size_t i = 0; i < bottoms.size(); ++i)
         if (description_.bottom_levels[i].name == d.bottom_level) instance.bottom = uint32_t(i);
+      const std::string why = rt::why_unreachable(instance, bottoms.at(instance.bottom));
+      if (!why.empty())
+        throw UserError(d.where,
+                        fmt::format("no ray can meet this instance of '{}': {}", d.bottom_level, why));
       instances.push_back(instance);
     }
     const rt::StructureInfo top =

@@ -239,7 +239,7 @@ std::vector<std::byte> bytes_of(const DataSource& source, const BlockType* block
   else if (source.init == "file")
     out = file_bytes(source, errors);
   else if (source.init == "mesh")
-    out = mesh_attribute(source, errors);
+    out = mesh_attribute(source);
   if (source.bytes && out.size() > *source.bytes)
     errors.error(source.where,
                  fmt::format("the data have {} bytes, and the buffer has {}", out.size(), *source.bytes));

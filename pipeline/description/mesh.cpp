@@ -24,27 +24,23 @@ scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
   return scenes::load_obj(path, materials);
 }
 
-std::vector<std::byte> mesh_attribute(const DataSource& source, Diagnostics& errors) {
+std::vector<std::byte> mesh_attribute(const DataSource& source) {
   std::vector<std::byte> out;
   const auto append = [&](const auto& value) {
     out.resize(out.size() + sizeof value);
     std::memcpy(out.data() + out.size() - sizeof value, &value, sizeof value);
   };
-  try {
-    const scenes::Model model = load_mesh(source.file, source.where);
-    if (source.attribute == "indices")
-      for (uint32_t index : model.indices) append(index);
-    else
-      for (const scenes::Vertex& v : model.vertices)
-        if (source.attribute == "normals")
-          append(v.normal);
-        else if (source.attribute == "coordinates")
-          append(v.texture_coordinate);
-        else
-          append(v.position);
-  } catch (const UserError& error) {
-    errors.error(source.where, error.what());
-  }
+  const scenes::Model model = load_mesh(source.file, source.where);
+  if (source.attribute == "indices")
+    for (uint32_t index : model.indices) append(index);
+  else
+    for (const scenes::Vertex& v : model.vertices)
+      if (source.attribute == "normals")
+        append(v.normal);
+      else if (source.attribute == "coordinates")
+        append(v.texture_coordinate);
+      else
+        append(v.position);
   return out;
 }
 

@@ -15,7 +15,7 @@ namespace glint::pipeline {
 scenes::Model load_mesh(const std::string& path, const SourceLocation& where);
 
 // Returns the bytes of an attribute. Positions and normals are 3 floats per vertex, coordinates are 2, and
-// indices are three u32 per triangle.
-std::vector<std::byte> mesh_attribute(const DataSource& source, Diagnostics& errors);
+// indices are three u32 per triangle. Throws UserError when the file cannot be read.
+std::vector<std::byte> mesh_attribute(const DataSource& source);
 
 }  // namespace glint::pipeline

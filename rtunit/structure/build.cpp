@@ -287,6 +287,13 @@ StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, c
   return place(memory, name, encode_bottom(name, input, options));
 }
 
+std::string why_unreachable(const Instance& instance, const StructureInfo& bottom) {
+  if (bottom.primitives == 0) return {};  // The instance is inactive.
+  if (!inverse(instance.transform)) return "its transform cannot be inverted in floats";
+  return is_finite(world_bounds(instance.transform, bottom.bounds)) ? ""
+                                                                    : "its transform moves it to infinity";
+}
+
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
                         std::span<const Instance> instances, std::span<const StructureInfo> bottoms,
                         const BuildOptions& options) {
@@ -301,19 +308,17 @@ StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
     if (bottom.format != format)
       throw UserError(fmt::format("'{}': bottom level {} has another node format", name, instance.bottom));
     if (bottom.primitives == 0) continue;
-    const auto to_object = inverse(instance.transform);
-    const Bounds bounds = world_bounds(instance.transform, bottom.bounds);
-    if (!to_object || !is_finite(bounds))
-      throw UserError(fmt::format("the transform of instance {} cannot be inverted in floats", i));
+    if (const std::string why = why_unreachable(instance, bottom); !why.empty())
+      throw UserError(fmt::format("'{}': instance {}: {}", name, i, why));
     InstanceLeaf leaf;
-    leaf.world_to_object = *to_object;
+    leaf.world_to_object = *inverse(instance.transform);
     leaf.structure = bottom.address;
     leaf.custom_index_and_mask = (instance.custom_index & 0xff'ffff) | instance.mask << 24;
     leaf.sbt_offset_and_flags = (instance.sbt_offset & 0xff'ffff) | instance.flags << 24;
     leaf.object_to_world = instance.transform;
     leaf.instance = uint32_t(i);
     ++leaves.primitives;
-    leaves.add(bounds, NodeKind::Instance, leaf, bottom.stack_need);
+    leaves.add(world_bounds(instance.transform, bottom.bounds), NodeKind::Instance, leaf, bottom.stack_need);
   }
   return place(memory, name, encode(name, 1, leaves, options));
 }

@@ -81,7 +81,11 @@ StructureInfo place(mem::AddressSpace& memory, const std::string& name, const En
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
                            const BuildOptions& options = {});
 
-// Throws UserError when a transform cannot be inverted, an index is out of range, a bottom level has another
+// Returns why no ray can be taken into the space of `instance`, which stands for `bottom`, as a clause like
+// "its transform ...", or "".
+std::string why_unreachable(const Instance& instance, const StructureInfo& bottom);
+
+// Throws UserError when an instance is unreachable, an index is out of range, a bottom level has another
 // node format or the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and
 // keep their index.
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,

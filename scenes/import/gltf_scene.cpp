@@ -27,8 +27,8 @@
 #include "scenes/import/gltf_materials.h"
 #include "scenes/import/gltf_mesh.h"
 #include "scenes/import/gltf_names.h"
+#include "scenes/import/picture_decoder.h"
 #include "scenes/import/scene_file.h"
-#include "scenes/import/texture_loader.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"
 
@@ -134,7 +134,12 @@ class Nodes {
     if (node.mesh >= 0) {
       if (!can_be_inverted(matrix))
         fail(node, index, "its transform flattens its mesh or is not finite, and a ray cannot follow it");
-      scene_.instances.push_back({model_of(node.mesh), affine(matrix)});
+      const uint32_t model = model_of(node.mesh);
+      const Bounds box = moved(boxes_[model], affine(matrix));
+      const glm::vec3 size = box.upper - box.lower;
+      if (glm::any(glm::isinf(size)) || glm::any(glm::isnan(size)))
+        fail(node, index, "its transform moves its mesh to infinity, and no ray can meet it");
+      scene_.instances.push_back({model, affine(matrix)});
     }
     if (node.camera >= 0 && !has_camera_) camera(named(file_.cameras, node.camera, "camera", path_), matrix);
     if (const auto light = node.extensions.find("KHR_lights_punctual");
@@ -146,6 +151,7 @@ class Nodes {
     const auto [place, is_new] = models_.try_emplace(mesh, uint32_t(scene_.models.size()));
     if (is_new) {
       scene_.models.push_back(read_mesh(file_, mesh, materials_, path_));
+      boxes_.push_back(bounds(scene_.models.back()));
       if (options_.progress) options_.progress(double(models_.size()) / double(file_.meshes.size()));
     }
     return place->second;
@@ -181,21 +187,22 @@ class Nodes {
   const std::vector<int32_t> materials_;
   std::vector<bool> has_parent_;  // of each node: whether it was added
   std::map<int, uint32_t> models_;
+  std::vector<Bounds> boxes_;  // of models
   bool has_camera_ = false, has_lamp_ = false;
 };
 
-bool decode(tinygltf::Image* image, int, std::string* error, std::string*, int, int,
+bool decode(tinygltf::Image* image, int index, std::string* error, std::string*, int, int,
             const unsigned char* bytes, int size, void*) {
-  try {
-    Texture texture = decode_texture(image->uri.empty() ? image->name : image->uri, {bytes, size_t(size)});
-    image->width = int(texture.width), image->height = int(texture.height);
-    image->component = 4, image->bits = 8;
-    image->image = std::move(texture.rgba);
-    return true;
-  } catch (const UserError& failure) {
-    *error += failure.what();
+  DecodedPicture picture = decode_picture({bytes, size_t(size)});
+  if (!picture.error.empty()) {
+    *error += fmt::format("image {} ('{}') is no PNG or JPEG picture: {}", index,
+                          image->uri.empty() ? image->name : image->uri, picture.error);
     return false;
   }
+  image->width = int(picture.width), image->height = int(picture.height);
+  image->component = 4, image->bits = 8;
+  image->image = std::move(picture.bytes);
+  return true;
 }
 
 std::string note_of(const tinygltf::Model& file) {

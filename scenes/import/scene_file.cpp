@@ -21,6 +21,9 @@ namespace fs = std::filesystem;
 constexpr float kFieldOfView = 40;           // degrees, for files without a camera
 constexpr Vec3 kFromThere{0.55f, 0.35f, 1};  // the camera looks from the right and a little above
 
+constexpr float kMost = std::numeric_limits<float>::max();
+constexpr Bounds kNothing{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+
 std::string ending_of(const std::string& name) {
   std::string ending = fs::path(name).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -62,21 +65,30 @@ Model flattened(const Scene& scene) {
   return out;
 }
 
+Bounds moved(const Bounds& box, const Affine& m) {
+  Bounds out = kNothing;
+  for (size_t corner = 0; corner < 8; ++corner)
+    for (size_t r = 0; r < 3; ++r) {
+      float x = m[r][3];
+      for (size_t k = 0; k < 3; ++k) x += m[r][k] * (corner >> k & 1 ? box.upper[k] : box.lower[k]);
+      out.lower[r] = std::min(out.lower[r], x);
+      out.upper[r] = std::max(out.upper[r], x);
+    }
+  return out;
+}
+
 Bounds world_bounds(const Scene& scene) {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  Bounds out{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
-  const auto add = [&out](const Model& model, const Affine& m) {
-    const Bounds box = bounds(model);  // a sphere's vertices are those of its tessellation
-    for (size_t corner = 0; corner < 8; ++corner)
-      for (size_t r = 0; r < 3; ++r) {
-        float x = m[r][3];
-        for (size_t k = 0; k < 3; ++k) x += m[r][k] * (corner >> k & 1 ? box.upper[k] : box.lower[k]);
-        out.lower[r] = std::min(out.lower[r], x);
-        out.upper[r] = std::max(out.upper[r], x);
-      }
-  };
-  for (const Instance& instance : instances_of(scene))
-    if (!scene.models[instance.model].vertices.empty()) add(scene.models[instance.model], instance.to_world);
+  Bounds out = kNothing;
+  for (const Instance& instance : instances_of(scene)) {
+    const Model& model = scene.models[instance.model];
+    if (model.vertices.empty()) continue;
+    // A sphere's vertices are those of its tessellation.
+    const Bounds box = moved(bounds(model), instance.to_world);
+    for (size_t r = 0; r < 3; ++r) {
+      out.lower[r] = std::min(out.lower[r], box.lower[r]);
+      out.upper[r] = std::max(out.upper[r], box.upper[r]);
+    }
+  }
   return out;
 }
 

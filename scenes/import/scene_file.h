@@ -29,6 +29,10 @@ Scene load_gltf(const std::string& path, const LoadOptions& options);
 // Returns all instances of triangles as one model in world coordinates.
 Model flattened(const Scene& scene);
 
+// Returns the bounds of a box after a transform. The difference of its corners is not finite where the
+// transform leaves the floats.
+Bounds moved(const Bounds& box, const Affine& m);
+
 // Returns the bounds of every instance, procedural ones included.
 Bounds world_bounds(const Scene& scene);
 

@@ -9,22 +9,13 @@
 #include "scenes/import/picture_decoder.h"
 
 namespace glint::scenes {
-namespace {
-
-Texture texture_of(const std::string& name, const std::string& place, DecodedPicture picture) {
-  if (!picture.error.empty())
-    throw UserError({place}, "this texture cannot be read: " + picture.error, "expected a PNG or JPEG file");
-  return {name, picture.width, picture.height, std::move(picture.bytes)};
-}
-
-}  // namespace
 
 Texture load_texture(const std::string& path) {
-  return texture_of(std::filesystem::path(path).stem().string(), path, decode_picture_bytes_of_file(path));
-}
-
-Texture decode_texture(const std::string& name, std::span<const uint8_t> bytes) {
-  return texture_of(name, name, decode_picture(bytes));
+  DecodedPicture picture = decode_picture_bytes_of_file(path);
+  if (!picture.error.empty())
+    throw UserError({path}, "this texture cannot be read: " + picture.error, "expected a PNG or JPEG file");
+  return {std::filesystem::path(path).stem().string(), picture.width, picture.height,
+          std::move(picture.bytes)};
 }
 
 }  // namespace glint::scenes

@@ -255,6 +255,19 @@ class Mistakes(PipelineTest):
     def test_an_index_without_a_vertex_is_refused(self):
         self.refuse(["index 3 is too large: there are 3 vertices"], ("[0.0, 0.8, 0.0]]", "[0.0, 0.8, 0.0]]\nindices = [0, 1, 3]"))
 
+    def test_an_instance_that_no_ray_can_meet_is_refused_at_its_line(self):
+        place = 'bottom_level = "triangle"\n'
+        self.refuse(["edited.toml:22:1: error: no ray can meet this instance of 'triangle': its transform cannot be inverted in floats"],
+                    (place, place + "scale = 0\n"))
+        self.refuse(["edited.toml:22:1: error: ", "its transform moves it to infinity"],
+                    (place, place + "transform = [1e38, 0, 0, 3.4e38, 0, 1, 0, 0, 0, 0, 1, 0]\n"))
+
+    def test_a_mistake_in_the_mesh_of_a_buffer_is_named_once_with_the_meshs_line(self):
+        self.write("bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n")
+        done = self.expect(2, ["bad.obj:3: error: this face names vertex 9"], "run",
+                           self.edit(("[[image]]", '[[buffer]]\nset = 0\nbinding = 7\nfile = "bad.obj"\nattribute = "positions"\n[[image]]')), "--out", "out")
+        self.assertEqual(done.stderr.count("error:"), 1, done.stderr)
+
     def test_an_unknown_kind_of_output_is_refused(self):
         self.refuse(["cannot save to 'picture.gif'"], ("picture.png", "picture.gif"))
 

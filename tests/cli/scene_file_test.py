@@ -99,6 +99,7 @@ class SceneFiles(unittest.TestCase):
         (self.folder / "bad.gltf").write_text(text)
         done = self.glint("run", "bad.gltf")
         self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("error:"), 1, done.stderr)
         for part in ("bad.gltf", *parts):
             self.assertIn(part, done.stderr)
 
@@ -159,11 +160,15 @@ class SceneFiles(unittest.TestCase):
         doubled = [{"children": [i + 1, i + 1]} for i in range(40)] + [{"mesh": 0}]
         self.refused(gltf(doubled), "node 40", "two parents")
         self.refused(gltf([CAMERA, {"mesh": 0}, {"mesh": 0, "name": "flat", "scale": [1, 0, 1]}]), "node 2 ('flat')", "flattens its mesh")
+        self.refused(gltf([CAMERA, {"mesh": 0}, {"mesh": 0, "name": "far", "translation": [3.4e38, 0, 0], "scale": [1e38, 1, 1]}]),
+                     "node 2 ('far')", "moves its mesh to infinity")
         self.refused(gltf([{"mesh": 0}]).replace(uri(b"")[:37] + uri(struct.pack("<f", -0.5))[37:42], uri(b"")[:37] + uri(b"\0\0\xc0\x7f")[37:42]),
                      "in mesh 0", "a position is (nan, -0.5, 0)")
         textured = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
         self.refused(gltf([{"mesh": 0}], materials=textured, textures=[{"source": 0}], images=[{"uri": "wood.png"}]),
                      "the picture of image 0 ('wood.png') cannot be read")
+        self.refused(gltf([{"mesh": 0}], materials=textured, textures=[{"source": 0}], images=[{"uri": uri(b"no picture", "image/png"), "name": "bark"}]),
+                     "image 0 ('bark') is no PNG or JPEG picture: unknown image type")
         self.refused(gltf([{"mesh": 0}], materials=textured, textures=[{}], images=[]), "it names image -1, and it has 0")
         self.refused(gltf([{"mesh": 0}]).replace('"count": 4', '"count": 400'), "leaves its buffer")
         self.refused("{}", "cannot be read")

@@ -131,7 +131,7 @@ TEST_CASE("input that cannot be built is refused with its index") {
   std::vector<Instance> instances(2);
   instances[1].transform = {1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0};
   CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}),
-                    Catch::Contains("instance 1 cannot be inverted"));
+                    Catch::Contains("'t': instance 1: its transform cannot be inverted"));
   instances[1] = {};
   instances[1].bottom = 1;
   CHECK_THROWS_WITH(build_top(memory, "t", instances, std::vector{bottom}),
