@@ -1,5 +1,6 @@
 // Runs the command `glint`: reads the command line, runs one subcommand, and turns errors into exit codes.
 // SPDX-License-Identifier: Apache-2.0
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
@@ -51,6 +52,12 @@ void keep_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(descriptor, F_GETFD) == -1)
       ::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+// Lets a write beyond the limit on the size of files (`ulimit -f`) fail with a reason. By default a signal
+// ends the process without one, and its half file stays.
+void keep_writing_errors() {
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int report_parse_error(const Command& command, const std::string& error, const Session& session) {
@@ -121,6 +128,7 @@ int main_of(int argc, char** argv) {
 int guarded_main(int argc, char** argv) {
   try {
     keep_descriptors();
+    keep_writing_errors();
     return main_of(argc, argv);
   } catch (const OutputError& error) {
     std::fprintf(stderr, "error: %s\n", error.what());

@@ -3,6 +3,7 @@
 #include "report/files/run_directory.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -34,11 +35,13 @@ constexpr const char* kResults[] = {"image.png",      "image.pfm",   "printf.txt
 constexpr const char* kFolder = "heat";  // the only folder of a run
 constexpr const char* kUnfinished = "the run has not ended: it still runs, or it was killed";
 
-bool put(const std::string& path, const std::string& bytes) {
+// Returns why the bytes could not be written. The streams of the library leave the system's reason in errno.
+std::error_code put(const std::string& path, const std::string& bytes) {
+  errno = 0;
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), std::streamsize(bytes.size()));
+  out.write(bytes.data(), std::streamsize(bytes.size())).flush();
   out.close();
-  return bool(out);
+  return out ? std::error_code() : std::error_code(errno != 0 ? errno : EIO, std::generic_category());
 }
 
 // Returns the strings of a list in a JSON file, or none when the file has no such list. It returns only names
@@ -72,21 +75,23 @@ std::vector<std::string> maps_before(const std::string& path) {
 }  // namespace
 
 void write_file(const std::string& path, const std::string& bytes) {
-  constexpr const char* kHint = "is the disk full, or the folder read-only?";
+  const auto fail = [&path](const std::error_code& why) {
+    throw UserError({path}, "cannot write the file: " + why.message(),
+                    "is the disk full, is there a limit on the size of files, or is the folder read-only?");
+  };
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
-    if (!put(path, bytes)) throw UserError({path}, "cannot write the file", kHint);
+    if (const std::error_code why = put(path, bytes)) fail(why);
     return;
   }
   const std::string target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error).string() : path;
   // The process id in the name keeps two processes from writing the same temporary file.
   const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
-  const bool is_whole = put(temporary, bytes);
-  if (is_whole) fs::rename(temporary, target, error);
-  if (is_whole && !error) return;
-  std::error_code ignored;
+  std::error_code why = put(temporary, bytes), ignored;
+  if (!why) fs::rename(temporary, target, why);
+  if (!why) return;
   fs::remove(temporary, ignored);
-  throw UserError({path}, "cannot write the file" + (is_whole ? ": " + error.message() : ""), kHint);
+  fail(why);
 }
 
 RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {

@@ -27,8 +27,8 @@ class Outputs(GlintTest):
         return sorted(path.name for path in (self.folder / folder).iterdir())
 
     def limited(self, most, *arguments):
-        """Runs glint where no file can grow beyond `most` bytes, as on a full disk. (Python ignores SIGXFSZ, and so does its child.)"""
-        return subprocess.run([GLINT, *arguments], capture_output=True, text=True, cwd=self.folder, timeout=300, restore_signals=False,
+        """Runs glint where no file can grow beyond `most` bytes. By default the system ends a process that tries to."""
+        return subprocess.run([GLINT, *arguments], capture_output=True, text=True, cwd=self.folder, timeout=300,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
 
     def test_a_run_that_fails_leaves_nothing_of_an_earlier_one_and_every_reader_refuses_it(self):
@@ -63,7 +63,7 @@ class Outputs(GlintTest):
         self.assertEqual(self.left("run"), ["config.toml", "run.json"])
         facts = json.loads((self.folder / "run/run.json").read_text())
         self.assertEqual(facts["exit"], 2)
-        self.assertIn("cannot write the file", facts["message"])
+        self.assertIn("cannot write the file: File too large", facts["message"])
 
     def test_a_file_that_cannot_be_written_keeps_what_it_was_and_leaves_no_temporary_one(self):
         self.ok(*RUN, "--out", "run")
@@ -71,7 +71,16 @@ class Outputs(GlintTest):
         done = self.limited(20000, "report", "run", "-o", "page/page.html")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual((self.folder / "page/page.html").read_text(), "before")
+        self.assertIn("page/page.html: error: cannot write the file: File too large", done.stderr)
         self.assertEqual(self.left("page"), ["page.html"])
+
+    def test_a_full_device_is_named_with_the_systems_reason(self):
+        self.ok(*RUN, "--out", "run")
+        self.expect(2, ["/dev/full: error: cannot write the file: No space left on device"], "report", "run", "-o", "/dev/full")
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([GLINT, "stats", "run"], stdout=full, stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=300)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("error: ", done.stderr)
 
     def test_pixels_that_are_not_finite_are_counted_and_the_first_is_named(self):
         self.write("p/picture.comp", "#version 460\nlayout(local_size_x = 8, local_size_y = 4) in;\nlayout(set = 0, binding = 0, rgba32f) uniform image2D picture;\n"
