@@ -161,29 +161,37 @@ void Annotator::add_below(Rows& rows, uint32_t program, const std::vector<uint32
   }
 }
 
-std::string Annotator::all(size_t number) const {
-  const SourceFile& file = map_.files.at(number);
-  // Maps lines to programs to instructions.
-  std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>> lines;
+Annotator::Parts Annotator::parts_of(size_t file) const {
+  Parts out;
   for (uint32_t p = 0; p < map_.programs.size(); ++p)
     for (uint32_t i = 0; i < map_.programs[p].isa.size(); ++i)
-      if (const ListedLine& line = map_.programs[p].isa[i]; line.line && line.file == number)
-        lines[line.line][p].push_back(i);
+      if (const ListedLine& line = map_.programs[p].isa[i]; line.line && line.file == file)
+        out[line.line][p].push_back(i);
+  return out;
+}
+
+// Adds the parts of a line, with a heading for each program where several have some.
+void Annotator::add_programs(Rows& rows, const std::map<uint32_t, std::vector<uint32_t>>& programs) const {
+  for (const auto& [program, instructions] : programs) {
+    if (programs.size() > 1)
+      rows.push_back(
+          joined(measures_.cells(nullptr), {"", fmt::format("  {}:", map_.programs[program].stage)}));
+    add_below(rows, program, instructions);
+  }
+}
+
+std::string Annotator::all(size_t number) const {
+  const SourceFile& file = map_.files.at(number);
   std::map<uint32_t, ProfileRow> costs;
   uint64_t cycles = 0;
   for (ProfileRow& row : by_line(profile_))
     if (row.file == file.path) cycles += row.total(), costs[row.line] = std::move(row);
   Rows rows;
-  for (const auto& [n, programs] : lines) {
+  for (const auto& [n, programs] : parts_of(number)) {
     rows.push_back(
         joined(measures_.cells(found(costs, n)),
                {std::to_string(n), n <= file.lines.size() ? file.lines[n - 1] : "(text not known)"}));
-    for (const auto& [program, instructions] : programs) {
-      if (programs.size() > 1)
-        rows.push_back(
-            joined(measures_.cells(nullptr), {"", fmt::format("  {}:", map_.programs[program].stage)}));
-      add_below(rows, program, instructions);
-    }
+    add_programs(rows, programs);
   }
   return sheet(fmt::format("{}: {} of the cycles of all instructions", file.path, measures_.share(cycles)),
                {"number", "source, below it SPIR-V, below it ISA"}, rows, "><");

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -40,13 +42,28 @@ class Annotator {
   // programs.
   std::string all(size_t number) const;
 
+  using IsWanted = std::function<bool(const std::string& path)>;
+  using IsWantedProgram = std::function<bool(uint32_t program)>;
+  // Returns the `count` lines that cost most, of all wanted files, the costliest first. `with_parts` puts the
+  // SPIR-V and the ISA below each, as all() does.
+  std::string top_lines(size_t count, const IsWanted& is_wanted, bool with_parts) const;
+  // Returns the `count` instructions of the wanted programs that cost most, in SPIR-V or in ISA.
+  std::string top_instructions(size_t count, const IsWantedProgram& is_wanted, bool in_spirv) const;
+
  private:
+  // Maps the lines of a file to programs, and these to their instructions.
+  using Parts = std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>>;
+
+  Parts parts_of(size_t file) const;
   std::string sheet(const std::string& heading, std::vector<std::string> columns,
                     const std::vector<std::vector<std::string>>& rows, const std::string& alignment) const;
   std::string place(const ListedLine& line) const;
   std::string heading_of(uint32_t program, const std::string& what) const;
   void add_below(std::vector<std::vector<std::string>>& rows, uint32_t program,
                  const std::vector<uint32_t>& instructions) const;
+  void add_programs(std::vector<std::vector<std::string>>& rows,
+                    const std::map<uint32_t, std::vector<uint32_t>>& programs) const;
+  std::string top_heading(const std::vector<ProfileRow>& top, size_t of, const std::string& what) const;
 
   const ProfileTable& profile_;
   const SourceMap& map_;

@@ -4,6 +4,7 @@
 import csv
 import json
 import re
+import shutil
 
 import glint_case
 from glint_case import ROOT, GlintTest
@@ -93,6 +94,53 @@ class Profile(GlintTest):
         (self.folder / "out/source.json").rename(self.folder / "out/away.json")
         self.assertIn("traceRayEXT", self.glint(0, "annotate", "out", "raygen.rgen").stdout)  # from the file itself
         self.assertIn("source.json", self.glint(2, "annotate", "out", "--view", "isa").stderr)
+
+    def test_top_shows_the_costliest_lines_of_all_files_in_order(self):
+        self.glint(0, "run", "WKND", *SMALL, "--profile", "--out", "out")
+        lines = [row for row in csv.DictReader((self.folder / "out/profile.csv").read_text().splitlines()) if row["by"] == "line"]
+        expected = sorted((int(row["cycles"]) for row in lines), reverse=True)[:4]
+        shown = self.glint(0, "annotate", "out", "--top", "4", "--measures", "cycles,issues").stdout
+        whole = sum(int(row["cycles"]) for row in csv.DictReader((self.folder / "out/profile.csv").read_text().splitlines()) if row["by"] == "instruction")
+        table = shown[shown.index("The 4 of"):]
+        self.assertEqual([f"{100 * cycles / whole:.1f}" for cycles in expected], re.findall(r"(?m)^ *(\d+\.\d) % +[\d ]+\S+:\d+  ", table))
+        self.assertIn(f"The 4 of {len(lines)} lines that cost most", table)
+        of_one = self.glint(0, "annotate", "out", "raygen.rgen", "--top", "2").stdout
+        self.assertEqual(len(re.findall(r"raygen\.rgen:\d+", of_one)), 2)
+        isa = self.glint(0, "annotate", "out", "raygen.rgen", "--view", "isa", "--top", "3").stdout
+        self.assertEqual(len(re.findall(r"(?m)^ *\d+\.\d %.*  raygen\.rgen  +\d+", isa)), 3)
+        self.assertIn("--top", self.glint(2, "annotate", "out", "--top", "0").stderr)
+
+    def test_two_runs_are_compared_line_by_line_though_one_source_was_edited(self):
+        shaders = self.folder / "mine"
+        shutil.copytree(ROOT / "shaders", shaders)
+        edited = shaders / "path_tracing/raygen.rgen"
+        self.glint(0, "run", "WKND", *SMALL, "--profile", "--shader-dir", "mine/path_tracing", "--out", "a")
+        text = edited.read_text()
+        edited.write_text(text.replace("      traceRayEXT", "      // a line above the trace\n      traceRayEXT"))
+        self.assertNotEqual(edited.read_text(), text)
+        self.glint(0, "run", "WKND", *SMALL, "--profile", "--shader-dir", "mine/path_tracing", "--spp", "2", "--out", "b")
+
+        def of_trace(run):
+            return next(row for row in csv.DictReader((self.folder / run / "profile.csv").read_text().splitlines())
+                        if row["by"] == "line" and row["file"].endswith("raygen.rgen") and "traceRayEXT" in source[run][int(row["line"]) - 1])
+
+        source = {"a": text.splitlines(), "b": edited.read_text().splitlines()}
+        was, now = of_trace("a"), of_trace("b")
+        self.assertEqual(int(now["line"]), int(was["line"]) + 1)
+        done = self.glint(0, "annotate", "a", "b", "--top", "3", "--measures", "rt_wait")
+        self.assertIn("0 of its lines are only in A and 1 only in B", done.stderr)
+        row = next(line for line in done.stdout.splitlines() if "traceRayEXT" in line)
+        numbers = f"{int(was['rt_wait']):,}  {int(now['rt_wait']):,}".replace(",", " ")
+        self.assertRegex(row, rf"^ *{numbers.replace('  ', ' +')} .* raygen\.rgen:{was['line']}>{now['line']} ")
+        self.assertIn(f"{int(now['rt_wait']) / int(was['rt_wait']):.2f}", row)
+        self.assertIn("raygen.rgen", self.glint(0, "annotate", "a", "b", "raygen.rgen").stdout)
+        self.assertEqual(self.glint(0, "annotate", "a", "a").stderr, "")
+        self.assertIn("by 'waits'", self.glint(2, "annotate", "a", "b", "--measures", "waits").stderr)
+        self.assertIn("one measure", self.glint(2, "annotate", "a", "b", "--measures", "cycles,issues").stderr)
+        self.assertIn("no counterpart", self.glint(2, "annotate", "a", "b", "--view", "isa").stderr)
+        self.assertIn("not a run directory", self.glint(2, "annotate", "a", "nowhere", "raygen.rgen").stderr)
+        self.glint(0, "run", "WKND", "--shader", "ao", *SMALL, "--profile", "--out", "ao")
+        self.assertIn("shader is", self.glint(0, "annotate", "a", "ao").stderr)
 
     def test_what_cannot_be_shown_is_refused_with_a_way_out(self):
         self.assertIn("--profile", self.glint(2, "annotate", "nowhere").stderr)

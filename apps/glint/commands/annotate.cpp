@@ -1,4 +1,5 @@
-// Declares `glint annotate RUN [FILE]`, which prints programs of a profiled run with what each line cost.
+// Declares `glint annotate RUN [B] [FILE]`, which prints programs of a profiled run with what each line cost,
+// or compares the lines of two runs.
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/annotate.h"
 
@@ -12,17 +13,27 @@
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "report/files/file_list.h"
+#include "report/files/line_changes.h"
 #include "report/files/profile_files.h"
 #include "report/files/run_facts.h"
 #include "report/files/run_record.h"
 #include "report/files/source_files.h"
+#include "report/metrics/compare.h"
 
 namespace glint::app {
 namespace {
 
 struct AnnotateOptions {
-  std::string run, file, view = "glsl";
+  std::string run, other, file, view = "glsl";
   std::vector<std::string> measures = report::kUsualMeasures;
+  bool has_measures = false;
+  uint32_t top = 0;  // 0: all lines
+};
+
+// Holds what is read of a run.
+struct Profiled {
+  ProfileTable profile;
+  report::SourceMap map;
 };
 
 // Returns the files of a run directory, which must be as the run left them. Any folder may hold a profile.
@@ -79,8 +90,9 @@ std::string files_text(const AnnotateOptions& options, const ProfileTable& profi
     }
   }
   if (!options.file.empty() && out.empty())
-    throw UserError({}, fmt::format("no line of '{}' has run", options.file),
-                    names.empty() ? "the run knows no source lines" : "files with cycles: " + names);
+    throw UserError(
+        {}, fmt::format("no line of '{}' has run, and it is not a second run's directory", options.file),
+        names.empty() ? "the run knows no source lines" : "files with cycles: " + names);
   return out;
 }
 
@@ -104,39 +116,129 @@ std::string programs_text(const AnnotateOptions& options, const ProfileTable& pr
       out += options.view == "isa" ? annotator.isa(number) : annotator.spirv(number);
   }
   if (out.empty())
-    throw UserError({}, fmt::format("no shader with code of '{}' has run", options.file),
+    throw UserError({},
+                    fmt::format("no shader with code of '{}' has run, and it is not a second run's directory",
+                                options.file),
                     "shaders with cycles: " + names);
   return out;
 }
 
-Exit annotate(const Session& session, const AnnotateOptions& options) {
-  const bool is_directory = std::filesystem::is_directory(options.run);
-  if (is_directory) report::check_finished(options.run);
-  const std::filesystem::path path = is_directory ? options.run + "/profile.csv" : options.run;
+Profiled read_profiled(const std::string& run, const std::string& view) {
+  const bool is_directory = std::filesystem::is_directory(run);
+  if (is_directory) report::check_finished(run);
+  const std::filesystem::path path = is_directory ? run + "/profile.csv" : run;
   const report::ListedFiles files =
       files_of_folder(path.has_parent_path() ? path.parent_path().string() : ".");
-  const ProfileTable profile = read_profile(files, path.filename().string());
-  const report::SourceMap map = read_source(files, profile, options.view);
-  if (is_directory) tell_of_files({options.run});
+  Profiled out{read_profile(files, path.filename().string()), {}};
+  out.map = read_source(files, out.profile, view);
+  if (is_directory) tell_of_files({run});
+  return out;
+}
+
+// Returns the costliest lines or instructions of everything that FILE names.
+std::string top_text(const AnnotateOptions& options, const report::SourceMap& map,
+                     const report::Annotator& annotator) {
+  if (options.view == "glsl" || options.view == "all")
+    return annotator.top_lines(
+        options.top, [&](const std::string& path) { return means(options.file, path); },
+        options.view == "all");
+  return annotator.top_instructions(
+      options.top, [&](uint32_t program) { return has_code_of(map, program, options.file); },
+      options.view == "spirv");
+}
+
+Exit annotate_one(const Session& session, const AnnotateOptions& options) {
+  const auto [profile, map] = read_profiled(options.run, options.view);
   const report::Annotator annotator(profile, map, options.measures, session.terminal);
+  // This also refuses what is not there, so it comes first for --top, too.
   std::string out = options.view == "glsl" || options.view == "all"
                         ? files_text(options, profile, map, annotator)
                         : programs_text(options, profile, map, annotator);
+  if (options.top) out = top_text(options, map, annotator);
   if (options.file.empty()) out = report::reason_table(profile, session.terminal) + out;
   write_output("", out);
   return Exit::Ok;
+}
+
+// Prints to stderr why the lines of two runs may not be each other's counterparts.
+void warn_of_differences(const AnnotateOptions& options, const report::LineComparison& comparison) {
+  if (std::filesystem::is_directory(options.run) && std::filesystem::is_directory(options.other)) {
+    report::RunRecord was, is;
+    was.add_finished(options.run);
+    is.add_finished(options.other);
+    if (const std::string different = report::different_work(was, is); !different.empty())
+      fmt::print(stderr, "warning: the runs did different work: {}\n", different);
+  }
+  for (const report::FileDifference& file : comparison.differ)
+    if (!file.is_known)
+      fmt::print(stderr, "warning: the text of '{}' is not known, so its lines are matched by number\n",
+                 file.file);
+    else
+      fmt::print(stderr,
+                 "warning: '{}' is not the same in both runs: {} of its lines are only in A and {} only in "
+                 "B; the others are matched by their text\n",
+                 file.file, file.only_before, file.only_after);
+  for (const std::string& file : comparison.unmatched)
+    fmt::print(stderr, "warning: only one of the runs has '{}'\n", file);
+}
+
+Exit annotate_two(const AnnotateOptions& options) {
+  if (options.view != "glsl")
+    throw UserError({}, fmt::format("two runs cannot be compared in the view '{}'", options.view),
+                    "their source lines are compared, because instructions have no counterpart");
+  if (options.has_measures && options.measures.size() != 1)
+    throw UserError({}, "two runs are compared by one measure", "name one, such as --measures issues");
+  const std::string measure = options.has_measures ? options.measures[0] : "cycles";
+  const Profiled before = read_profiled(options.run, options.view),
+                 after = read_profiled(options.other, options.view);
+  report::LineComparison comparison =
+      report::compare_lines({before.profile, before.map}, {after.profile, after.map}, measure);
+  if (comparison.files == 0)
+    throw UserError({},
+                    fmt::format("'{}' and '{}' have no source file in common", options.run, options.other),
+                    "compare runs of the same shaders");
+  warn_of_differences(options, comparison);
+  std::erase_if(comparison.lines,
+                [&](const report::LineChange& line) { return !means(options.file, line.file); });
+  if (comparison.lines.empty())
+    throw UserError({}, fmt::format("no line of '{}' has run in either run", options.file));
+  write_output("", report::line_changes_text(comparison, measure, options.top));
+  return Exit::Ok;
+}
+
+// Returns whether a word names a run rather than a source file.
+bool names_a_run(const std::string& word) {
+  return std::filesystem::is_directory(word) || std::filesystem::path(word).extension() == ".csv";
+}
+
+Exit annotate(const Session& session, AnnotateOptions options) {
+  if (!options.other.empty() && !names_a_run(options.other)) {
+    if (!options.file.empty())
+      throw UserError({}, fmt::format("'{}' is not a run directory", options.other),
+                      "`glint annotate A B FILE` compares the lines of FILE in the runs A and B");
+    std::swap(options.file, options.other);
+  }
+  return options.other.empty() ? annotate_one(session, options) : annotate_two(options);
 }
 
 }  // namespace
 
 void add_annotate(Command app, Session& session) {
   auto options = std::make_shared<AnnotateOptions>();
-  Command command = app.add_subcommand(
-      "annotate", "Print the GLSL, SPIR-V or ISA of a profiled run with what each line cost");
+  Command command = app.add_subcommand("annotate",
+                                       "Print the GLSL, SPIR-V or ISA of a profiled run with what each line "
+                                       "cost, or compare the lines of two");
   command.add_option("RUN", options->run, "Run directory, or its profile.csv").required();
+  command.add_option("B", options->other,
+                     "Second run, whose source lines are compared with those of the first; without one, FILE "
+                     "stands here");
   command.add_option(
       "FILE", options->file,
       "Source file or shader to print, or the end of its path (default: all, the costliest first)");
+  command
+      .add_option("--top", options->top,
+                  "Prints only this many lines, the costliest first; of two runs, those that changed most")
+      .in_range(uint32_t{1}, ~uint32_t{0});
   command
       .add_option("--view", options->view,
                   "Selects what is printed: source lines (glsl), SPIR-V after optimisation (spirv), ISA "
@@ -146,11 +248,14 @@ void add_annotate(Command app, Session& session) {
   command
       .add_option("--measures", options->measures,
                   "Columns to print, separated by commas: cycles, issues, lanes, accesses, requests, "
-                  "sectors, latency, waits, and the name of any reason of docs/profiling.md")
+                  "sectors, latency, waits, and the name of any reason of docs/profiling.md; two runs are "
+                  "compared by one of them (default: cycles)")
       .delimiter(',')
       .capture_default_str();
-  command.callback(
-      [&session, options] { session.action = [&session, options] { return annotate(session, *options); }; });
+  command.callback([&session, options, command] {
+    options->has_measures = command.count("--measures") > 0;
+    session.action = [&session, options] { return annotate(session, *options); };
+  });
 }
 
 }  // namespace glint::app

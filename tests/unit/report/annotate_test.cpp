@@ -103,6 +103,28 @@ TEST_CASE(
   CHECK(annotator.spirv(0).find("not compiled from SPIR-V") != std::string::npos);
 }
 
+TEST_CASE("the costliest lines and instructions come first, however the source orders them") {
+  const ProfileTable profiled = profile();
+  const SourceMap source = map();
+  const Annotator annotator(profiled, source, {"cycles"}, {});
+  const auto everything = [](const auto&) { return true; };
+  CHECK(annotator.top_lines(1, everything, false) ==
+        "The 1 of 2 lines that cost most: 85.7 % of the cycles of all instructions\n"
+        "cycles     place  source\n"
+        "85.7 %  a.rgen:2      out_x = x;\n\n");
+  CHECK(annotator.top_lines(5, everything, false).find("The 2 of 2 lines") == 0);
+  CHECK(annotator.top_lines(1, everything, true).find("OpStore %9 %8\n") != std::string::npos);
+  CHECK(annotator
+            .top_lines(
+                1, [](const std::string&) { return false; }, false)
+            .find("The 0 of 0") == 0);
+  const std::string isa = annotator.top_instructions(2, everything, false);
+  CHECK(isa.find("73.5 %  a.rgen      2  st.global.b32 [%rd6], %r4;  a.rgen:2\n"
+                 "12.2 %  a.rgen      1  mov.b32 %r4, %r1;           a.rgen:2\n") != std::string::npos);
+  CHECK(annotator.top_instructions(3, everything, true).find("12.2 %  a.rgen       0  (of no SPIR-V") !=
+        std::string::npos);
+}
+
 TEST_CASE("a file whose text is not known shows the lines with figures, and no others") {
   const ProfileTable profiled = profile();
   const SourceMap source = source_map({program()}, [](const std::string&) { return std::nullopt; });
