@@ -33,8 +33,9 @@ void set_array(DramParams& p, uint32_t row_bytes, bool dual_command_bus, uint32_
   p.dual_command_bus = dual_command_bus, p.activate_clocks = activate_clocks;
 }
 
-// All times are from Ramulator 2.1's presets, with clocks turned into nanoseconds. Their order is
-// rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l, rrd_s, rrd_l, faw, wtr_s, wtr_l.
+// All times are from Ramulator 2.1's presets, with clocks turned into nanoseconds, unless a kind names
+// another source or says "guess". Their order is rcd, rcd_write, rp, ras, rc, cl, wl, wr, rtp, ccd_s, ccd_l,
+// rrd_s, rrd_l, faw, wtr_s, wtr_l.
 
 // GDDR6-14000 at 1.35 V has a tCK of 0.57 ns. Refreshes are 3333 clocks apart and take 211 clocks for all
 // banks or 106 for one bank.
@@ -55,6 +56,30 @@ void gddr6_14000_1v25(DramParams& p) {
   gddr6_14000(p);
   set_times(p,
             {17.1, 11.4, 17.1, 34.2, 51.3, 13.7, 3.4, 15.4, 2.28, 1.14, 2.28, 6.27, 6.27, 24.5, 5.13, 6.27});
+}
+// No published times of GDDR6X were found.
+// - 19 GT/s: NVIDIA's figures of the RTX 3080 (320 bits, 760 GB/s).
+// - Channels of 16 bits, accesses of 32 bytes, a command clock of an eighth of the data rate, 16 banks in 4
+//   groups, rows of 2 KB, 2 and 4 clocks for tCCD_S and tCCD_L: guess, as in GDDR6.
+// - All other times and the refresh: guess, as GDDR6-14000 at 1.35 V.
+void gddr6x_19000(DramParams& p) {
+  gddr6_14000(p);
+  set_bus(p, 2375.0, 8, 16, 2);
+  p.ccd_s = 0.842, p.ccd_l = 1.684;
+}
+// No published times of GDDR7 were found.
+// - 28 GT/s: NVIDIA's figures of the RTX 5090 (512 bits, 1792 GB/s).
+// - Channels of 8 bits: JEDEC's announcement of JESD239 has four channels and 192 GB/s for a die at 48 GT/s.
+// - 2 clocks of 571 ps for 32 bytes (16 PAM3 symbols on a lane, which count as 32 bits here), 16 banks
+//   without groups, rows of 2 KB, 4 clocks from column to column command of one bank, 2 for an activate, 1900
+//   ns from refresh to refresh: a model for Ramulator 2 that cites JESD239D. Here each bank is its own group.
+// - Separate buses for row and column commands: that model, and press reports of two commands in parallel.
+// - All other times: guess, as GDDR6-14000 at 1.25 V, from which that model takes them, too.
+void gddr7_28000(DramParams& p) {
+  gddr6_14000_1v25(p);
+  set_bus(p, 1750.0, 16, 32, 1);
+  set_array(p, 2048, true, 2);
+  p.bank_groups = 16;
 }
 // LPDDR5-6400 has a tCK of 1.25 ns and 16-bit channels. An activate is two commands (ACT-1, ACT-2). Refreshes
 // of 16 Gb dies are 3125 clocks apart and take 224 clocks for all banks or 112 for one bank.
@@ -82,6 +107,13 @@ constexpr Kind kKinds[] = {
     {"gddr6_14000_1v25",
      "GDDR6-14000 at 1.25 V; a 16-bit channel moves 28 GB/s, and rows are slower than at 1.35 V.",
      gddr6_14000_1v25},
+    {"gddr6x_19000",
+     "GDDR6X at 19 GT/s; a 16-bit channel moves 38 GB/s. Its times are guesses from GDDR6-14000 at 1.35 V.",
+     gddr6x_19000},
+    {"gddr7_28000",
+     "GDDR7 at 28 GT/s; an 8-bit channel moves 28 GB/s. Its row times are guesses from GDDR6-14000 at 1.25 "
+     "V.",
+     gddr7_28000},
     {"lpddr5_6400", "LPDDR5-6400; a 16-bit channel moves 12.8 GB/s.", lpddr5_6400},
     {"hbm3_6400", "HBM3-6400; a 32-bit pseudo-channel moves 25.6 GB/s.", hbm3_6400}};
 

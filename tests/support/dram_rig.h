@@ -24,8 +24,8 @@ inline DramParams plain() {
 // the mapping.
 class DramRig {
  public:
-  explicit DramRig(const DramParams& params)
-      : root(nullptr, "test"), params_(params), channel({params_, 256, 1000.0, &root}) {
+  explicit DramRig(const DramParams& params, double core_mhz = 1000.0)
+      : root(nullptr, "test"), params_(params), channel({params_, 256, core_mhz, &root}) {
     DramMap map(params.banks, params.bank_groups, params.row_bytes, 256);
     for (Address local = 0; local < Address{params.banks} * params.row_bytes * 8; local += 256) {
       const DramLocation at = map.locate(local);
@@ -46,6 +46,7 @@ class DramRig {
   }
   // Moves the end of run() to a cycle that is later than all that was asked for.
   void idle_until(Cycle now) { channel.advance(now), idle_ = now; }
+  Cycle idle() const { return idle_; }  // returns a cycle that is later than all that was asked for
   Cycle read_alone(uint32_t bank, uint32_t row) {
     const Cycle start = idle_;
     add(start, bank, row);

@@ -16,6 +16,34 @@ TEST_CASE("a closed bank needs activate and read, an open row only read, a confl
   CHECK(rig.channel.stats().row_hits.value() == 1);
 }
 
+TEST_CASE("each kind of graphics memory has the latency and the spacing of its row") {
+  struct Expected {
+    const char* kind;
+    Cycle closed, open, two_banks, one_bank;  // clocks: to the end of a read, and between two row hits
+  };
+  // GDDR6X: 15.4 ns, 13.7 ns and 2 clocks of 0.421 ns are 37 + 33 + 2. GDDR7: 17.1 ns, 13.7 ns and 2 clocks
+  // of 0.571 ns are 30 + 24 + 2.
+  for (const Expected& want : {Expected{"gddr6_14000", 27 + 24 + 2, 24 + 2, 2, 4},
+                               Expected{"gddr6x_19000", 37 + 33 + 2, 33 + 2, 2, 4},
+                               Expected{"gddr7_28000", 30 + 24 + 2, 24 + 2, 2, 4}}) {
+    INFO(want.kind);
+    DramParams params;
+    apply_dram_kind(params, want.kind);
+    params.refresh = "none";
+    DramRig rig(params, params.clock_mhz);
+    CHECK(rig.read_alone(0, 1) == kEdge + want.closed);
+    CHECK(rig.read_alone(0, 1) == kEdge + want.open);
+    rig.read_alone(1, 1);
+    for (const auto& [second, spacing] : {std::pair{1u, want.two_banks}, {0u, want.one_bank}}) {
+      rig.add(rig.idle(), 0, 1, false, 1);
+      rig.add(rig.idle(), second, 1, false, 2);
+      auto at = rig.run();
+      CHECK(at[2] - at[1] == spacing);
+      rig.idle_until(at[2] + 1000);
+    }
+  }
+}
+
 TEST_CASE("row hits of one bank group are spaced by the long column delay, of two by the short one") {
   for (const auto& [second, spacing] : {std::pair{0u, 6}, {4u, 6}, {1u, 4}}) {
     DramRig rig(plain());

@@ -135,6 +135,8 @@ TEST_CASE("the defaults are the kind gddr6_7000, and each kind is possible and a
   for (const auto& [kind, gigabytes] : {std::pair{"gddr6_7000", 14.0},
                                         {"gddr6_14000", 28.0},
                                         {"gddr6_14000_1v25", 28.0},
+                                        {"gddr6x_19000", 38.0},  // 760 GB/s on 20 channels
+                                        {"gddr7_28000", 28.0},   // 1792 GB/s on 64 channels
                                         {"lpddr5_6400", 12.8},
                                         {"hbm3_6400", 25.6}}) {
     INFO(kind);
@@ -145,7 +147,7 @@ TEST_CASE("the defaults are the kind gddr6_7000, and each kind is possible and a
     CHECK(peak(params, 8, 1365.0).dram_bandwidth == Approx(4 * gigabytes * 1e9));
     CHECK_FALSE(dram_kind_doc(kind).empty());
   }
-  CHECK(dram_kinds().size() == 5);
+  CHECK(dram_kinds().size() == 7);
 }
 
 TEST_CASE("a kind of DRAM sets what a file does not name, whatever the order of the keys") {
