@@ -45,7 +45,7 @@ struct Slot {
 };
 
 struct Save {
-  std::string file;  // .png .pfm .npy .csv .raw, in the run directory
+  std::string file;  // .png .pfm .exr .npy .csv .raw, in the run directory
   SourceLocation where;
 };
 

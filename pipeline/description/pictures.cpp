@@ -1,4 +1,4 @@
-// Reads PNG and HDR files and encodes texels.
+// Reads picture files and encodes texels.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/pictures.h"
 
@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <optional>
 
+#include "pictures/decode.h"
 #include "pipeline/description/data.h"
-#include "scenes/import/picture_decoder.h"
 
 namespace glint::pipeline {
 namespace {
@@ -27,7 +27,7 @@ struct Layer {
 
 // Loads a file. 8-bit files give values of 0 to 1, unless the format keeps integers.
 Layer load(const std::string& path, bool as_integers, const SourceLocation& where) {
-  const scenes::DecodedPicture picture = scenes::decode_picture_file(path);
+  const pictures::DecodedPicture picture = pictures::decode_picture_file(path);
   if (!picture.error.empty())
     throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
   Layer out;
@@ -147,9 +147,10 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
                              : texel == "s32" ? TexelFormat::Rgba32Sint
                                               : TexelFormat::Rgba32Float;
   const TexelFormat plain = (image.files.empty() ? format_named(declared) : std::nullopt).value_or(widest);
-  const bool is_hdr = !image.files.empty() && scenes::is_hdr_picture(image.files[0]);
-  view.format = image.format.value_or(
-      !image.files.empty() && !is_hdr && texel != "u32" && texel != "s32" ? TexelFormat::Rgba8Unorm : plain);
+  const bool has_floats = !image.files.empty() && pictures::is_float_picture(image.files[0]);
+  view.format = image.format.value_or(!image.files.empty() && !has_floats && texel != "u32" && texel != "s32"
+                                          ? TexelFormat::Rgba8Unorm
+                                          : plain);
   const exec::FormatInfo& info = exec::info_of(view.format);
   check_format(image, info, texel);
   view.name = image.name, view.shape = shape, view.sampler = image.sampler,

@@ -30,8 +30,9 @@ nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
   return nlohmann::ordered_json::json_pointer("/" + key);
 }
 
-constexpr const char* kResults[] = {"image.png",      "image.pfm",   "printf.txt", "profile.csv",
-                                    "profile.folded", "source.json", "series.csv", "trace.json.gz"};
+constexpr const char* kResults[] = {"image.png",   "image.pfm",   "image.exr",
+                                    "printf.txt",  "profile.csv", "profile.folded",
+                                    "source.json", "series.csv",  "trace.json.gz"};
 constexpr const char* kFolder = "heat";  // the only folder of a run
 constexpr const char* kUnfinished = "the run has not ended: it still runs, or it was killed";
 
@@ -170,9 +171,9 @@ void RunDirectory::remove_results() const {
   fs::remove(folder, error);  // The folder stays when it holds files of others.
 }
 
-void RunDirectory::write_image(const ImageView& image) const {
-  write("image.png", png_bytes(image));
-  write("image.pfm", pfm_bytes(image));
+void RunDirectory::write_image(const pictures::ImageView& image) const {
+  write("image.png", pictures::png_bytes(image));
+  write("image.pfm", pictures::pfm_bytes(image));
 }
 
 void RunDirectory::write_stats(const stats::Group& root, bool compact) const {

@@ -10,9 +10,9 @@
 
 #include "base/params.h"
 #include "base/stats.h"
+#include "pictures/encode.h"
 #include "report/files/file_list.h"
 #include "report/files/folder_lock.h"
-#include "report/picture/image_files.h"
 #include "report/picture/not_finite.h"
 
 namespace glint::report {
@@ -99,7 +99,7 @@ class RunDirectory {
   // Removes the results that this run or an earlier one has left. config.toml, run.json and files of others
   // stay.
   void remove_results() const;
-  void write_image(const ImageView& image) const;  // image.png, image.pfm
+  void write_image(const pictures::ImageView& image) const;  // image.png, image.pfm
   // Writes stats.<format> of every registered format, or, for RunInfo::compact, stats.csv with totals alone.
   void write_stats(const stats::Group& root, bool compact = false) const;
   // Writes config.toml, without comments for RunInfo::compact.

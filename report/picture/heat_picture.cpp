@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "pictures/encode.h"
 #include "report/files/heat_files.h"
 #include "report/picture/colour_map.h"
-#include "report/picture/image_files.h"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -64,7 +64,7 @@ class Canvas {
       for (const uint8_t part : pixel) rgba.push_back(float(part) / 255.0f);
       rgba.push_back(1.0f);
     }
-    return png_bytes({uint32_t(width_), uint32_t(height_), rgba});
+    return pictures::png_bytes({uint32_t(width_), uint32_t(height_), rgba});
   }
 
  private:

@@ -13,8 +13,8 @@ struct Picture {
   std::vector<float> rgb;
 };
 
-// Reads a PFM of three channels, or a PNG of 8 bits as values of 0 to 1. Throws UserError when the file is
-// neither.
+// Reads a PFM, EXR or HDR file as its floats, or another picture of 8 bits as values of 0 to 1. Throws
+// UserError for other files, and for damaged ones.
 Picture read_picture(const std::string& path);
 
 // Returns whether there is no distance between two pixels. Two values are the same when they are equal, when

@@ -9,7 +9,7 @@
 
 namespace glint::report {
 
-std::optional<NotFinite> not_finite(const ImageView& image) {
+std::optional<NotFinite> not_finite(const pictures::ImageView& image) {
   NotFinite out;
   const size_t pixels = size_t{image.width} * image.height;
   for (size_t i = 0; i < pixels; ++i) {
@@ -25,7 +25,7 @@ std::optional<NotFinite> not_finite(const ImageView& image) {
   return out.pixels > 0 ? std::optional(out) : std::nullopt;
 }
 
-std::string text_of(const NotFinite& found, const ImageView& image) {
+std::string text_of(const NotFinite& found, const pictures::ImageView& image) {
   return fmt::format("{} of {} pixels are not finite; the first at x {}, y {} from the top left: {} {} {}",
                      with_thousands(found.pixels), with_thousands(uint64_t{image.width} * image.height),
                      found.x, found.y, found.rgb[0], found.rgb[1], found.rgb[2]);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "report/picture/image_files.h"
+#include "pictures/encode.h"
 
 namespace glint::report {
 
@@ -18,9 +18,9 @@ struct NotFinite {
 };
 
 // Returns nothing when all pixels are finite.
-std::optional<NotFinite> not_finite(const ImageView& image);
+std::optional<NotFinite> not_finite(const pictures::ImageView& image);
 
 // Returns text such as "3 of 4 096 pixels are not finite; the first at x 3, y 4 from the top left: nan 0 0".
-std::string text_of(const NotFinite& found, const ImageView& image);
+std::string text_of(const NotFinite& found, const pictures::ImageView& image);
 
 }  // namespace glint::report

@@ -24,10 +24,10 @@
 
 #include "base/diagnostics.h"
 #include "base/regular_file.h"
+#include "pictures/decode.h"
 #include "scenes/import/gltf_materials.h"
 #include "scenes/import/gltf_mesh.h"
 #include "scenes/import/gltf_names.h"
-#include "scenes/import/picture_decoder.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"
@@ -193,7 +193,7 @@ class Nodes {
 
 bool decode(tinygltf::Image* image, int index, std::string* error, std::string*, int, int,
             const unsigned char* bytes, int size, void*) {
-  DecodedPicture picture = decode_picture({bytes, size_t(size)});
+  pictures::DecodedPicture picture = pictures::decode_picture({bytes, size_t(size)});
   if (!picture.error.empty()) {
     *error += fmt::format("image {} ('{}') is no PNG or JPEG picture: {}", index,
                           image->uri.empty() ? image->name : image->uri, picture.error);

@@ -6,14 +6,15 @@
 #include <utility>
 
 #include "base/diagnostics.h"
-#include "scenes/import/picture_decoder.h"
+#include "pictures/decode.h"
 
 namespace glint::scenes {
 
 Texture load_texture(const std::string& path) {
-  DecodedPicture picture = decode_picture_bytes_of_file(path);
+  pictures::DecodedPicture picture = pictures::decode_picture_bytes_of_file(path);
   if (!picture.error.empty())
-    throw UserError({path}, "this texture cannot be read: " + picture.error, "expected a PNG or JPEG file");
+    throw UserError({path}, "this texture cannot be read: " + picture.error,
+                    "expected a PNG, JPEG, HDR, PFM or EXR file");
   return {std::filesystem::path(path).stem().string(), picture.width, picture.height,
           std::move(picture.bytes)};
 }

@@ -7,8 +7,8 @@
 
 namespace glint::scenes {
 
-// Reads a PNG or JPEG file as RGBA8; alpha is 255 where the file has none. Throws UserError when the file
-// cannot be read.
+// Reads a PNG, JPEG, HDR, PFM or EXR file as RGBA8; alpha is 255 where the file has none. Throws UserError
+// when the file cannot be read.
 Texture load_texture(const std::string& path);
 
 }  // namespace glint::scenes

@@ -251,6 +251,16 @@ class RunDirectory(GlintTest):
         self.assertGreater(stats["gpu"]["cycles"]["value"], 5000)  # more than the launch alone
         self.assertIn("out/image.png", done.stdout)
 
+    def test_the_picture_is_kept_as_exr_on_request_and_equals_the_pfm(self):
+        done = self.glint("run", "WKND", *SMALL, "--mode", "functional", "--exr", "--out", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(p.name for p in (self.folder / "out").iterdir()), sorted([*self.FILES, "image.exr"]))
+        done = self.glint("imgdiff", "out/image.exr", "out/image.pfm", "--min-psnr", "inf")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(self.glint("run", "WKND", *SMALL, "--mode", "functional", "--out", "out").returncode, 0)
+        self.assertFalse((self.folder / "out/image.exr").exists())
+        self.expect(2, ["--exr belongs to scenes", "save"], "run", ROOT / "examples/mandelbrot/pipeline.toml", "--exr")
+
     def test_the_same_command_gives_the_same_statistics_and_image_bytes(self):
         for out in ("a", "b"):
             done = self.glint("run", "WKND", *SMALL, "--out", out)

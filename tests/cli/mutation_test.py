@@ -55,6 +55,23 @@ def png():
             chunk(b"IEND", b""))
 
 
+def exr():
+    """Returns an EXR file of 2 by 2 pixels with one channel, without compression."""
+    def attribute(name, kind, value):
+        return name + b"\0" + kind + b"\0" + struct.pack("<I", len(value)) + value
+    head = b"\x76\x2f\x31\x01" + struct.pack("<I", 2) + b"".join((
+        attribute(b"channels", b"chlist", b"Y\0" + struct.pack("<IIII", 2, 0, 1, 1) + b"\0"), attribute(b"compression", b"compression", b"\0"),
+        attribute(b"dataWindow", b"box2i", struct.pack("<4i", 0, 0, 1, 1)), attribute(b"displayWindow", b"box2i", struct.pack("<4i", 0, 0, 1, 1)),
+        attribute(b"lineOrder", b"lineOrder", b"\0"), attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+        attribute(b"screenWindowCenter", b"v2f", bytes(8)), attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)))) + b"\0"
+    first = len(head) + 16
+    return head + struct.pack("<QQ", first, first + 16) + b"".join(struct.pack("<ii2f", y, 8, 0.25, 0.5 + y) for y in range(2))
+
+
+def pfm():
+    return b"PF\n2 2\n-1.0\n" + struct.pack("<12f", *(0.25 * i for i in range(12)))
+
+
 def glb():
     """Returns one triangle with a camera and a picture that lies in the file."""
     data = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0) + png()
@@ -101,6 +118,9 @@ class Scenes(Damage):
         self.damage("a.obj", mesh, "run", "a.obj", *FRAME)
         self.damage("a.mtl", materials, "run", "a.obj", *FRAME)
         self.damage("a.png", png(), "run", "a.obj", *FRAME)
+        for name, data in (("a.exr", exr()), ("a.pfm", pfm())):
+            (self.folder / "a.mtl").write_bytes(materials.replace(b"a.png", name.encode()))
+            self.damage(name, data, "run", "a.obj", *FRAME)
 
     def test_gltf_in_both_forms(self):
         data = glb()
@@ -121,6 +141,15 @@ class Texts(Damage):
         for source, name in ((ROOT / "examples/spheres", "pipeline.toml"), (ROOT / "examples/mandelbrot", "pipeline.toml"), (ROOT / "shaders/kernels", "saxpy.toml")):
             shutil.copytree(source, self.folder / source.name)
             self.damage(f"{source.name}/{name}", (source / name).read_bytes(), "run", f"{source.name}/{name}", *FRAME[5:])
+
+    def test_pictures_of_pipelines(self):
+        (self.folder / "p.comp").write_text("#version 460\nlayout(local_size_x = 2, local_size_y = 2) in;\nlayout(binding = 0) uniform sampler2D t;\n"
+                                            "layout(binding = 1, rgba32f) uniform image2D o;\n"
+                                            "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(o, p, texelFetch(t, p, 0)); }\n")
+        for name, data in (("a.exr", exr()), ("a.pfm", pfm())):
+            (self.folder / "p.toml").write_text(f"[compute]\nshader = 'p.comp'\n[launch]\ngroups = 1\n[[image]]\nbinding = 0\nfile = '{name}'\n"
+                                                "[[image]]\nbinding = 1\nsave = 'o.exr'\n")
+            self.damage(name, data, "run", "p.toml", *FRAME[5:])
 
     def test_shaders_kernels_and_scripts(self):
         self.damage("a.comp", (ROOT / "examples/mandelbrot/mandelbrot.comp").read_bytes(), "compile", "a.comp")

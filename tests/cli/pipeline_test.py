@@ -155,6 +155,28 @@ class Inputs(PipelineTest):
         self.assertEqual(glint_case.read_png(self.folder / "out/copy.png"), glint_case.read_png(picture))
 
 
+    def test_float_pictures_keep_every_bit_on_their_way_through_a_pipeline(self):
+        self.write("copy.comp", "#version 460\nlayout(local_size_x = 3, local_size_y = 2) in;\nlayout(binding = 0) uniform sampler2D t;\n"
+                                "layout(binding = 1, rgba32f) uniform image2D o;\n"
+                                "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(o, p, texelFetch(t, p, 0)); }\n")
+        numbers = [1e-3 * i - 0.004 + 7.0 * (i % 3) for i in range(18)]
+        (self.folder / "in.pfm").write_bytes(b"PF\n3 2\n-1.0\n" + struct.pack("<18f", *numbers))
+        for source, saved in (("in.pfm", "one.exr"), ("out/one.exr", "two.pfm")):
+            self.write("p.toml", f"[compute]\nshader = 'copy.comp'\n[launch]\ngroups = 1\n[[image]]\nbinding = 0\nfile = '{source}'\n"
+                                 f"[[image]]\nbinding = 1\nsize = [3, 2]\nsave = '{saved}'\n")
+            done = self.glint("run", "p.toml", "--mode", "functional", "--out", "next")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            (self.folder / "next").rename(self.folder / "out")
+        self.assertEqual((self.folder / "out/two.pfm").read_bytes(), (self.folder / "in.pfm").read_bytes())
+
+    def test_a_damaged_exr_is_named_with_its_fault(self):
+        self.write("p.comp", "#version 460\nlayout(local_size_x = 1) in;\nlayout(binding = 0) uniform sampler2D t;\nlayout(binding = 1) buffer B { vec4 v; };\n"
+                             "void main() { v = texelFetch(t, ivec2(0), 0); }\n")
+        (self.folder / "bad.exr").write_bytes(b"\x76\x2f\x31\x01\x02\0\0\0channels\0")
+        self.write("p.toml", "[compute]\nshader = 'p.comp'\n[launch]\ngroups = 1\n[[image]]\nbinding = 0\nfile = 'bad.exr'\n[[buffer]]\nbinding = 1\ncount = 4\n")
+        self.expect(2, ["p.toml:5", "bad.exr", "the header is cut short"], "run", "p.toml", "--out", "out")
+
     def test_a_gltf_mesh_is_the_triangle_it_holds_moved_by_its_node(self):
         self.copy("hello_triangle")
         corners = struct.pack("<9f", -1.8, -0.7, 0, -0.2, -0.7, 0, -1, 0.8, 0)  # one to the left of the example's

@@ -13,11 +13,11 @@
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
+#include "pictures/encode.h"
 #include "report/files/file_list.h"
 #include "report/files/run_record.h"
 #include "report/picture/flip.h"
 #include "report/picture/image_compare.h"
-#include "report/picture/image_files.h"
 
 namespace glint::app {
 namespace {
@@ -44,7 +44,7 @@ std::set<std::string> pictures_of(const std::string& directory) {
   if (files.read(kPicture)) return {kPicture};
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     const std::string name = entry.path().filename().string(), ending = entry.path().extension().string();
-    if ((ending == ".pfm" || ending == ".png") && files.read(name)) names.insert(name);
+    if ((ending == ".pfm" || ending == ".exr" || ending == ".png") && files.read(name)) names.insert(name);
   }
   return names;
 }
@@ -76,8 +76,9 @@ std::vector<PicturePair> pairs_of(const ImgdiffOptions& options) {
     if (others.contains(name)) pairs.push_back({options.a + "/" + name, options.b + "/" + name, name});
   if (pairs.size() == 1) pairs[0].name.clear();
   if (pairs.empty())
-    throw UserError({}, fmt::format("'{}' and '{}' have no picture in common", options.a, options.b),
-                    "a pipeline keeps one with save = \"NAME.pfm\" or \"NAME.png\" under [[image]]");
+    throw UserError(
+        {}, fmt::format("'{}' and '{}' have no picture in common", options.a, options.b),
+        "a pipeline keeps one with save = \"NAME.pfm\", \"NAME.exr\" or \"NAME.png\" under [[image]]");
   if (pairs.size() > 1 && !options.out.empty())
     throw UserError({}, fmt::format("--out takes one picture, and the runs have {} in common", pairs.size()),
                     "name the two files instead of the directories");
@@ -87,7 +88,7 @@ std::vector<PicturePair> pairs_of(const ImgdiffOptions& options) {
 std::string png_of(const report::Picture& picture) {
   std::vector<float> rgba(picture.rgb.size() / 3 * 4, 1.0f);
   for (size_t i = 0; i < picture.rgb.size(); ++i) rgba[i / 3 * 4 + i % 3] = picture.rgb[i];
-  return report::png_bytes({picture.width, picture.height, rgba});
+  return pictures::png_bytes({picture.width, picture.height, rgba});
 }
 
 std::string measures(const report::Picture& a, const report::ImageDifference& d, const report::Flip& flip,
@@ -171,10 +172,10 @@ void add_imgdiff(Command app, Session& session) {
   auto options = std::make_shared<ImgdiffOptions>();
   Command command = app.add_subcommand("imgdiff", "Measure how far apart two pictures are");
   command
-      .add_option(
-          "A", options->a,
-          "First picture: a PFM or PNG file, or a run directory, which stands for its image.pfm or for the "
-          "pictures that its pipeline saved")
+      .add_option("A", options->a,
+                  "First picture: a PFM, EXR, HDR, PNG or JPEG file, or a run directory, which stands for "
+                  "its image.pfm or for the "
+                  "pictures that its pipeline saved")
       .required();
   command.add_option("B", options->b, "Second picture").required();
   command.add_option("-o,--out", options->out, "PNG file to write the difference to; --metric selects which");

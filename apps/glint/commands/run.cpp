@@ -43,6 +43,9 @@ Exit run(const Session& session, const RunOptions& options) {
   if (!options.more.empty())
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
                     "only Amber scripts can be run several at a time");
+  if (options.scene.exr && (names_pipeline(what) || names_kernel(what)))
+    throw UserError({}, "--exr belongs to scenes",
+                    "a pipeline keeps a picture with save = \"NAME.exr\" under [[image]]");
   if (names_pipeline(what)) return run_pipeline(session, what, options.launch);
   if (names_kernel(what)) return run_ptx(session, what, options.kernel_launch, options.launch);
   return run_scene(session, options.scene, options.launch);
@@ -79,6 +82,8 @@ void add_scene_options(Command command, RunOptions& options) {
       "--strict", options.strict,
       "Let accesses outside of buffers and images be faults in Amber scripts that do not declare "
       "robust access");
+  command.add_flag("--exr", options.scene.exr,
+                   "Also write the picture of a scene as image.exr: floats of 32 bits, with transparency");
   command.add_flag("--instancing", options.scene.instancing,
                    "Let models that are affine copies of another one share its structure and vertices");
 }

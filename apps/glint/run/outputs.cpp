@@ -6,9 +6,10 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "pictures/encode.h"
+#include "pictures/exr.h"
 #include "pipeline/description/data.h"
 #include "pipeline/description/pictures.h"
-#include "report/picture/image_files.h"
 #include "report/picture/npy.h"
 
 namespace glint::app {
@@ -61,9 +62,9 @@ std::string wrong_with_output(const std::string& file, bool is_image) {
   if (file.find('/') != std::string::npos)
     return "the file goes to the run directory: give a name without folders";
   if (ending == ".npy" || ending == ".csv" || ending == ".raw" || ending == ".bin") return "";
-  if (ending == ".png" || ending == ".pfm")
+  if (ending == ".png" || ending == ".pfm" || ending == ".exr")
     return is_image ? "" : "a buffer is not a picture: expected .npy, .csv or .raw";
-  return is_image ? "expected .png, .pfm, .npy, .csv or .raw" : "expected .npy, .csv or .raw";
+  return is_image ? "expected .png, .pfm, .exr, .npy, .csv or .raw" : "expected .npy, .csv or .raw";
 }
 
 std::string first_numbers(const std::string& named, std::span<const std::byte> bytes, size_t count) {
@@ -92,12 +93,13 @@ std::string buffer_file(const std::string& file, const std::string& named, std::
 std::string image_file(const std::string& file, const exec::ImageView& view,
                        std::span<const std::byte> bytes) {
   const std::string ending = ending_of(file);
-  if (ending != ".png" && ending != ".pfm" && ending != ".npy" && ending != ".csv")
+  if (ending != ".png" && ending != ".pfm" && ending != ".exr" && ending != ".npy" && ending != ".csv")
     return std::string(text_of(bytes));
   const std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
   const uint32_t rows = view.height * view.depth * view.layers;
-  if (ending == ".png") return report::png_bytes({view.width, rows, texels});
-  if (ending == ".pfm") return report::pfm_bytes({view.width, rows, texels});
+  if (ending == ".png") return pictures::png_bytes({view.width, rows, texels});
+  if (ending == ".pfm") return pictures::pfm_bytes({view.width, rows, texels});
+  if (ending == ".exr") return pictures::exr_bytes({view.width, rows, texels});
   if (ending == ".npy")
     return report::npy_bytes("<f4", fmt::format("({}, {}, 4)", rows, view.width),
                              text_of(std::as_bytes(std::span(texels))));

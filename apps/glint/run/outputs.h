@@ -14,7 +14,7 @@ namespace glint::app {
 // has one number per line, and any other ending keeps the bytes unchanged.
 std::string buffer_file(const std::string& file, const std::string& type, std::span<const std::byte> bytes);
 
-// Returns the bytes of an image's file: .png and .pfm hold level 0 with layers and slices one below the
+// Returns the bytes of an image's file: .png, .pfm and .exr hold level 0 with layers and slices one below the
 // other, .npy holds floats (rows, columns, 4), .csv has one row per texel, and any other ending keeps the raw
 // bytes.
 std::string image_file(const std::string& file, const exec::ImageView& view,

@@ -140,7 +140,7 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
   }
 }
 
-void note_not_finite(const std::string& file, const report::ImageView& image, report::RunInfo& info) {
+void note_not_finite(const std::string& file, const pictures::ImageView& image, report::RunInfo& info) {
   const std::optional<report::NotFinite> found = report::not_finite(image);
   if (!found) return;
   info.not_finite.emplace_back(file, *found);

@@ -13,6 +13,7 @@
 #include "apps/glint/options/image_size.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/recorded_run.h"
+#include "pictures/exr.h"
 #include "pipeline/render.h"
 #include "pipeline/structure_cache.h"
 #include "report/files/run_directory.h"
@@ -99,7 +100,7 @@ report::RunInfo describe_run(const Session& session, const SceneOptions& options
 // Renders the job and leaves its files in the directory.
 pipeline::RenderResult render_into(const Session& session, const report::RunDirectory& directory,
                                    report::RunInfo& info, pipeline::RenderJob& job, uint64_t max_cycles,
-                                   std::vector<std::string>& files) {
+                                   bool exr, std::vector<std::string>& files) {
   const auto render = [&](const pipeline::LaunchWatch& watch) {
     job.watch = watch;
     pipeline::RenderResult rendered = pipeline::render(job);
@@ -109,8 +110,9 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     return rendered;
   };
   const auto keep = [&](const pipeline::RenderResult& rendered) {
-    const report::ImageView image{rendered.width, rendered.height, rendered.rgba};
+    const pictures::ImageView image{rendered.width, rendered.height, rendered.rgba};
     directory.write_image(image);
+    if (exr) directory.write("image.exr", pictures::exr_bytes(image));
     note_not_finite("image.pfm", image, info);
     directory.write_stats(rendered.statistics(), info.compact);
     for (std::string& line : write_observation(job.observe, rendered, directory))
@@ -141,7 +143,8 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
   std::vector<std::string> files = {
       "picture    " + directory.path_of("image.png"),
       "statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt")};
-  const pipeline::RenderResult result = render_into(session, directory, info, job, launch.max_cycles, files);
+  const pipeline::RenderResult result =
+      render_into(session, directory, info, job, launch.max_cycles, options.exr, files);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   return print_result(session, launch.json, job, result, info, title, std::move(files));
 }

@@ -14,6 +14,7 @@ struct SceneOptions {
   std::string assets;      // folder of original scene data; empty: none
   std::string shader_dir;  // empty: the workload's own shaders
   bool instancing = false, shader_given = false;
+  bool exr = false;  // also keep the picture as image.exr
   scenes::RenderParams frame;
 };
 

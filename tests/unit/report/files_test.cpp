@@ -15,7 +15,6 @@
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
-#include "report/picture/image_files.h"
 #include "tests/support/catch.h"
 
 namespace glint::report {
@@ -31,35 +30,6 @@ struct TemporaryFolder {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 };
-
-float float_at(const std::string& bytes, size_t at) {
-  float value;
-  std::memcpy(&value, bytes.data() + at, 4);
-  return value;
-}
-
-const std::vector<float> kTwoRows{
-    0.25f, 0.5f, 1.0f, 1.0f, 2.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f};
-
-TEST_CASE("a PFM holds the bottom row first, three little-endian floats a pixel, unclamped") {
-  const std::string bytes = pfm_bytes({1, 2, kTwoRows});
-
-  const std::string header = "PF\n1 2\n-1.0\n";
-  REQUIRE(bytes.size() == header.size() + 24);
-  CHECK(bytes.substr(0, header.size()) == header);
-  CHECK(float_at(bytes, header.size()) == 2.0f);
-  CHECK(float_at(bytes, header.size() + 4) == -1.0f);
-  CHECK(std::isnan(float_at(bytes, header.size() + 8)));
-  CHECK(float_at(bytes, header.size() + 12) == 0.25f);
-}
-
-TEST_CASE("a PNG states its size, 8 bits and three channels in its header") {
-  const std::string bytes = png_bytes({1, 2, kTwoRows});
-
-  REQUIRE(bytes.size() > 33);
-  CHECK(bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n");
-  CHECK(bytes.substr(16, 10) == std::string("\0\0\0\x01\0\0\0\x02\x08\x02", 10));
-}
 
 const std::vector<ParamInfo> kParams{{"core.warps", "warp", "Warps.", "32", "1 to 64"},
                                      {"core.units.fp32.latency", "cycle", "Latency.", "4", "1 to 1000"},
@@ -107,7 +77,7 @@ TEST_CASE("a run directory is complete and leaves no temporary file") {
   const RunDirectory directory((folder.path / "a/b").string());
   stats::Group root(nullptr, "gpu");
   stats::Counter counter(&root, "cycles", "cycle", "Cycles.");
-  directory.write_image({1, 2, kTwoRows});
+  directory.write_image({1, 2, std::vector<float>(8, 0.5f)});
   directory.write_stats(root);
   directory.write_config(kParams, "t");
   RunInfo info;

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/diagnostics.h"
-#include "report/picture/image_files.h"
+#include "pictures/encode.h"
 #include "tests/support/catch.h"
 
 using namespace glint;
@@ -147,10 +147,10 @@ TEST_CASE("pictures of two sizes are refused, and so are damaged files") {
 TEST_CASE("what a run writes as PFM and PNG reads back as it was") {
   const std::vector<float> rgba = {0,    0.5f, 1,    1, 0.25f, 2.5f, -1,   1,
                                    0.1f, 0.2f, 0.3f, 1, 0.4f,  0.6f, 0.8f, 1};
-  const report::ImageView view{2, 2, rgba};
+  const pictures::ImageView view{2, 2, rgba};
   const std::string base = (std::filesystem::temp_directory_path() / "glint_image_compare_test").string();
-  std::ofstream(base + ".pfm", std::ios::binary) << report::pfm_bytes(view);
-  std::ofstream(base + ".png", std::ios::binary) << report::png_bytes(view);
+  std::ofstream(base + ".pfm", std::ios::binary) << pictures::pfm_bytes(view);
+  std::ofstream(base + ".png", std::ios::binary) << pictures::png_bytes(view);
 
   const Picture floats = report::read_picture(base + ".pfm"), bytes = report::read_picture(base + ".png");
 

@@ -1,4 +1,4 @@
-// Encodes a rendered image as PNG (8 bits, for eyes) and as PFM (floats, for comparing).
+// Encodes a rendered image as PNG (8 bits, for eyes) and as PFM (floats, for comparing). exr.h encodes EXR.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-namespace glint::report {
+namespace glint::pictures {
 
-// Holds display-referred values, with row 0 on top and four floats per pixel. Alpha is not written.
+// Holds display-referred values, with row 0 on top and four floats per pixel. PNG and PFM have no alpha.
 struct ImageView {
   uint32_t width = 0, height = 0;  // pixels
   std::span<const float> rgba;     // width * height * 4
@@ -20,4 +20,4 @@ std::string png_bytes(const ImageView& image);
 // Returns "PF" and three little-endian floats per pixel, with the bottom row first. Values are not clamped.
 std::string pfm_bytes(const ImageView& image);
 
-}  // namespace glint::report
+}  // namespace glint::pictures

@@ -1,6 +1,6 @@
 // Encodes images.
 // SPDX-License-Identifier: Apache-2.0
-#include "report/picture/image_files.h"
+#include "pictures/encode.h"
 
 #include <bit>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 #pragma GCC diagnostic pop
 #endif
 
-namespace glint::report {
+namespace glint::pictures {
 namespace {
 
 uint8_t to_byte(float value) {
@@ -63,4 +63,4 @@ std::string pfm_bytes(const ImageView& image) {
   return out;
 }
 
-}  // namespace glint::report
+}  // namespace glint::pictures
