@@ -105,7 +105,8 @@ void KernelLowering::place_parameters() {
     symbol.space = VariableSpace::Param;
     symbol.address = at;
     scopes_.front().names[d.name] = symbol;
-    kernel_.parameters.push_back({d.name, uint32_t(at), uint32_t(d.bytes())});
+    kernel_.parameters.push_back(
+        {d.name, uint32_t(at), uint32_t(d.bytes()), fmt::format("{}{}", d.type.kind, d.type.bits)});
     at += d.bytes();
   }
   bank_bytes_ = uint32_t(aligned(at, 8));

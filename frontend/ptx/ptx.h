@@ -20,6 +20,7 @@ namespace glint::frontend {
 struct KernelParameter {
   std::string name;
   uint32_t offset = 0, bytes = 0;
+  std::string type;  // type of its elements as PTX writes it, such as "u64"
 };
 
 // Describes a variable of the module, which the launch must place and fill.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "pipeline/description/modules.h"
+#include "pipeline/description/usual_values.h"
 
 namespace glint::pipeline {
 namespace {
@@ -22,29 +24,6 @@ using frontend::BlockType;
 
 // Choice: these defaults are the side of a picture and the number of elements of run-time arrays.
 constexpr uint32_t kSide = 256, kElements = 65536;
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  return out + "\"";
-}
-
-std::string zeros(const BlockType& type) {
-  const auto list = [](size_t count, const std::string& each) {
-    std::string out = "[";
-    for (size_t i = 0; i < count; ++i) out += (i ? ", " : "") + each;
-    return out + "]";
-  };
-  if (type.kind == BlockType::Kind::Array) return list(std::min(type.count, 64u), zeros(type.element[0]));
-  if (type.kind == BlockType::Kind::Struct) {
-    std::string out = "{ ";
-    for (const auto& member : type.members)
-      out += fmt::format("{}{} = {}", out.size() > 2 ? ", " : "", member.name, zeros(member.type));
-    return out + " }";
-  }
-  const std::string zero = type.number[0] == 'f' ? "0.0" : "0";
-  return type.offsets.size() == 1 ? zero : list(type.offsets.size(), zero);
-}
 
 // Returns the number type that all of a block is made of, or u32 when there is no such type.
 std::string number_of(const BlockType& type) {
@@ -113,11 +92,7 @@ class Writer {
     out_ += fmt::format(text, std::forward<T>(values)...) + "\n";
   }
 
-  std::string from_folder(const std::string& path) const {
-    std::error_code failed;
-    const fs::path relative = fs::proximate(path, folder_.empty() ? "." : folder_, failed);
-    return failed || relative.empty() ? path : relative.string();
-  }
+  std::string from_folder(const std::string& path) const { return path_from(path, folder_); }
   std::string path_of(const ShaderModule& m) const { return from_folder(m.path); }
 
   void write_compile() {
@@ -136,7 +111,7 @@ class Writer {
       if (m && !m->reflection.shader_record.members.empty()) {
         for (const std::string& member : frontend::describe_members(m->reflection.shader_record))
           line("# {}", member);
-        line("data = {}", zeros(m->reflection.shader_record));
+        line("data = {}", usual_value("", m->reflection.shader_record, kSide));
         return;
       }
   }
@@ -228,7 +203,8 @@ class Writer {
       const BlockType& block = m.reflection.push_constants;
       if (block.members.empty()) continue;
       line("\n[push_constants]");
-      for (const auto& member : block.members) line("{} = {}", member.name, zeros(member.type));
+      for (const auto& member : block.members)
+        line("{} = {}", member.name, usual_value(member.name, member.type, kSide));
       return;
     }
   }
@@ -301,16 +277,29 @@ class Writer {
                                                : fmt::format("{}, {}", w, h);
   }
 
+  // Returns the first contents of a buffer. Meshes and materials of zeros would make pictures black or not
+  // finite, so where there is a picture only buffers that look like results begin with zeros.
+  std::string init_of(const std::string& name, const std::string& number) const {
+    std::string small = name;
+    std::transform(small.begin(), small.end(), small.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    const auto has = [&](const char* word) { return small.find(word) != std::string::npos; };
+    const bool is_result = has("out") || has("result") || has("accum") || has("sum") || has("hist");
+    if (writes_picture() && !is_result && number == "f32") return "init = \"random\"  # zero, value, iota";
+    if (writes_picture() && !is_result && has("ind")) return "init = \"iota\"  # zero, value, random";
+    return "init = \"zero\"  # value, iota, random";
+  }
+
   void write_buffer(const frontend::Binding& b, const std::string& name, uint32_t element) {
     write_slot("buffer", b, name, element);
     for (const std::string& member : frontend::describe_members(b.block)) line("# {}", member);
     if (b.kind == BindingKind::UniformBuffer) {
-      line("data = {}", zeros(b.block));
+      line("data = {}", usual_value("", b.block, kSide));
       return;
     }
     const std::string number = number_of(b.block);
-    line("type = {}\nbytes = {}\ninit = \"zero\"  # value, iota, random; or data = [...], or file = \"...\"",
-         quoted(number), default_bytes(b.block));
+    line("type = {}\nbytes = {}\n{}; or data = [...], or file = \"...\"", quoted(number),
+         default_bytes(b.block), init_of(name, number));
     line("show = 8");
     line("save = {}", quoted(fmt::format("{}{}.npy", name, element ? fmt::format("{}", element) : "")));
   }
@@ -345,6 +334,18 @@ class Writer {
 };
 
 }  // namespace
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return out + "\"";
+}
+
+std::string path_from(const std::string& path, const std::string& folder) {
+  std::error_code failed;
+  const fs::path relative = fs::proximate(path, folder.empty() ? "." : folder, failed);
+  return failed || relative.empty() ? path : relative.string();
+}
 
 std::string default_description(const std::vector<std::string>& shaders, const std::string& folder,
                                 const frontend::GlslOptions& glsl) {

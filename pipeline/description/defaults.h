@@ -13,6 +13,11 @@ namespace glint::pipeline {
 std::string default_description(const std::vector<std::string>& shaders, const std::string& folder,
                                 const frontend::GlslOptions& glsl = {});
 
+// Returns a text as TOML's basic string.
+std::string quoted(const std::string& text);
+// Returns the path of a file as a description in `folder` names it.
+std::string path_from(const std::string& path, const std::string& folder);
+
 // Returns a ray generation shader with the shaders beside it that have its name and another stage's ending.
 std::vector<std::string> with_companions(const std::string& shader);
 

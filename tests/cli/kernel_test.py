@@ -21,6 +21,40 @@ class Kernels(GlintTest):
         done = self.glint("run", KERNELS / "block_sums.ptx", "--launch", KERNELS / "block_sums.toml", "--out", "sums")
         self.assertIn("32640 98176 163712 229248", done.stdout)
 
+    def test_init_writes_a_launch_file_that_runs_as_it_is(self):
+        for name in ("saxpy", "block_sums"):
+            with self.subTest(kernel=name):
+                self.assertEqual(self.glint("init", f"{name}.toml", KERNELS / f"{name}.ptx").returncode, 0)
+                done = self.glint("run", f"{name}.toml", "--out", name)
+                self.assertEqual(done.returncode, 0, done.stderr)
+        # y = a * x + y with a = 1 and both counting from 0
+        self.assertEqual(struct.unpack("<4f", (self.folder / "saxpy/y.bin").read_bytes()[:16]), (0.0, 2.0, 4.0, 6.0))
+
+    def test_init_writes_a_kernel_to_begin_with_where_there_is_none(self):
+        (self.folder / "new").mkdir()
+        done = self.glint("init", "new/first.toml", "new/first.ptx")
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+        self.assertIn("there was no 'new/first.ptx'", done.stderr)
+        self.assertIn('kernel = "first.ptx"', (self.folder / "new/first.toml").read_text())
+        for mode in ("functional", "timing"):
+            done = self.glint("run", "new/first.toml", "--mode", mode, "--out", mode)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            squares = struct.unpack("<65536f", (self.folder / mode / "squares.bin").read_bytes())
+            self.assertEqual(squares[:1025], tuple(float(i * i) for i in range(1024)) + (1024.0,))
+        mine = (self.folder / "new/first.ptx").read_text() + "// mine\n"
+        self.write("new/first.ptx", mine)
+        self.expect(2, ["exists already"], "init", "new/first.toml", "new/first.ptx")
+        self.assertEqual(self.glint("init", "--force", "new/first.toml", "new/first.ptx").returncode, 0)
+        self.assertEqual((self.folder / "new/first.ptx").read_text(), mine)
+
+    def test_init_refuses_what_a_launch_file_cannot_give(self):
+        self.write("a.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry k(.param .align 4 .b8 block[12]) { ret; }\n")
+        self.expect(2, ["parameter 'block' has 12 bytes"], "init", "a.toml", "a.ptx")
+        self.expect(2, ["one PTX file"], "init", "a.toml", "a.ptx", "b.comp")
+        self.write("none.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n")
+        self.expect(2, ["no kernel"], "init", "a.toml", "none.ptx")
+        self.assertFalse((self.folder / "a.toml").exists())
+
     def test_a_kernel_without_a_launch_file_is_refused(self):
         self.expect(2, ["needs a launch file"], "run", KERNELS / "saxpy.ptx")
 

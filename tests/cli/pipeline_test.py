@@ -8,7 +8,7 @@ import struct
 import subprocess
 
 import glint_case
-from glint_case import ROOT, GlintTest
+from glint_case import ROOT, GlintTest, read_png
 
 PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion"]
 
@@ -224,6 +224,39 @@ void main() { words[gl_LocalInvocationIndex % 2u] = imageAtomicAdd(counts, ivec2
                 done = self.glint("init", f"{name}.toml", *shaders)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.run_file(f"{name}.toml")
+
+    def test_the_picture_of_a_new_file_shows_something(self):
+        self.write("cam.rgen", """#version 460
+#extension GL_EXT_ray_tracing : require
+layout(set = 0, binding = 0) uniform accelerationStructureEXT scene;
+layout(set = 0, binding = 1, rgba8) uniform writeonly image2D picture;
+layout(set = 0, binding = 2) uniform Camera { mat4 viewInverse; mat4 projInverse; vec3 lightDirection; float intensity; } cam;
+layout(location = 0) rayPayloadEXT vec3 color;
+void main() {
+  const vec2 at = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) * 2.0 - 1.0;
+  const vec3 along = mat3(cam.viewInverse) * normalize((cam.projInverse * vec4(at, 1.0, 1.0)).xyz);
+  traceRayEXT(scene, gl_RayFlagsOpaqueEXT, 0xff, 0, 0, 0, (cam.viewInverse * vec4(0, 0, 0, 1)).xyz, 0.001, along, 100.0, 0);
+  imageStore(picture, ivec2(gl_LaunchIDEXT.xy), vec4(color * cam.intensity * max(0.0, dot(cam.lightDirection, vec3(0, 1, 0))), 1.0));
+}
+""")
+        head = "#version 460\n#extension GL_EXT_ray_tracing : require\nlayout(location = 0) rayPayloadInEXT vec3 color;\n"
+        self.write("cam.rmiss", head + "void main() { color = vec3(0.0); }\n")
+        self.write("cam.rchit", head + "void main() { color = vec3(gl_PrimitiveID < 2 ? 0.3 : 1.0); }\n")  # the floor, the pyramid
+        projects = {name: [p for p in sorted((ROOT / "examples" / name).iterdir()) if p.suffix not in (".toml", ".obj")] for name in PICTURES}
+        for name, shaders in {**projects, "cam": [f"cam.{stage}" for stage in ("rgen", "rmiss", "rchit")]}.items():
+            with self.subTest(project=name):
+                self.assertEqual(self.glint("init", f"{name}.toml", *shaders).returncode, 0)
+                done = self.glint("run", f"{name}.toml", "--mode", "functional", "--out", name)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertNotIn("not finite", done.stderr)
+                width, height, data = read_png(self.folder / name / "picture.png")
+                lit = sum(any(data[i:i + 3]) for i in range(0, len(data), 3))
+                self.assertGreater(lit, width * height / 10)
+                self.assertGreater(len({data[i:i + 3] for i in range(0, len(data), 3)}), 2)
+        # The camera sees the pyramid before the floor, the right way up: the floor is in the lower half, the top row is empty.
+        self.assertFalse(any(data[:3 * width]))
+        self.assertGreater(data[3 * (width * height // 2 + width // 2)], 190)
+        self.assertGreater(sum(any(data[i:i + 3]) for i in range(len(data) // 2, len(data), 3)), lit / 2)
 
     def test_init_keeps_include_folders_and_macros_of_the_command_line(self):
         (self.folder / "parts").mkdir()

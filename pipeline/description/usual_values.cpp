@@ -1,0 +1,126 @@
+// Holds the usual values by name.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/description/usual_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <initializer_list>
+#include <vector>
+
+namespace glint::pipeline {
+namespace {
+
+using frontend::BlockType;
+using Matrix = std::array<double, 16>;  // column after column
+
+constexpr uint32_t kMostWritten = 64;  // elements of an array that are written out
+
+// The camera stands at (0, 1, 4) and looks at the origin: a turn about x whose sine is 1 / sqrt(17).
+constexpr double kSine = 0.242536, kCosine = 0.970143, kDistance = 4.123106;
+constexpr Matrix kView{1, 0, 0, 0, 0, kCosine, kSine, 0, 0, -kSine, kCosine, 0, 0, 0, -kDistance, 1};
+constexpr Matrix kViewInverse{1, 0, 0, 0, 0, kCosine, -kSine, 0, 0, kSine, kCosine, 0, 0, 1, 4, 1};
+// This is a perspective of 60 degrees onto a square, from 0.1 to 100, with depths from 0 to 1 and y downwards
+// as in Vulkan's pictures.
+constexpr double kFocal = 1.732051, kNear = 0.1, kFar = 100;
+constexpr Matrix kProjection{
+    kFocal, 0, 0, 0, 0, -kFocal, 0, 0, 0, 0, kFar / (kNear - kFar), -1, 0, 0, kNear* kFar / (kNear - kFar),
+    0};
+constexpr Matrix kProjectionInverse{
+    1 / kFocal, 0, 0, 0, 0, -1 / kFocal, 0, 0, 0, 0, 0, (kNear - kFar) / (kNear * kFar), 0, 0, -1, 1 / kNear};
+constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix out{};
+  for (size_t column = 0; column < 4; ++column)
+    for (size_t row = 0; row < 4; ++row)
+      for (size_t k = 0; k < 4; ++k) out[4 * column + row] += a[4 * k + row] * b[4 * column + k];
+  return out;
+}
+
+bool has(const std::string& name, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return name.find(word) != std::string::npos; });
+}
+
+Matrix matrix_of(const std::string& name) {
+  const bool is_inverse = has(name, {"inv", "toworld", "to_world"});
+  const bool is_view = has(name, {"view", "camera", "cam"}), is_projection = has(name, {"proj"});
+  if (is_view && is_projection)
+    return is_inverse ? product(kViewInverse, kProjectionInverse) : product(kProjection, kView);
+  if (is_projection) return is_inverse ? kProjectionInverse : kProjection;
+  if (is_view) return is_inverse ? kViewInverse : kView;
+  return kIdentity;
+}
+
+// Returns the numbers of a vector or of one number; vectors take as many as they have.
+std::array<double, 4> vector_of(const std::string& name, bool is_vector, uint32_t side) {
+  const double s = side;
+  if (has(name, {"time", "frame", "seed", "offset"})) return {0, 0, 0, 0};
+  if (!is_vector) return {1, 1, 1, 1};
+  if (has(name, {"resolution", "size", "extent", "viewport", "dimension"})) return {s, s, 1, 1};
+  const bool is_direction = has(name, {"dir", "forward", "front"});
+  if (has(name, {"light", "sun"}) && is_direction) return {0.48, 0.8, 0.36, 0};
+  if (has(name, {"light", "sun"}) && has(name, {"pos"})) return {2, 4, 3, 1};
+  if (is_direction) return {0, -kSine, -kCosine, 0};
+  if (has(name, {"target", "lookat", "look_at", "center", "centre"})) return {0, 0, 0, 1};
+  if (has(name, {"eye", "pos", "origin", "camera"})) return {0, 1, 4, 1};
+  if (name == "up" || name.ends_with("up")) return {0, kCosine, -kSine, 0};
+  if (name.ends_with("right")) return {1, 0, 0, 0};
+  return {1, 1, 1, 1};
+}
+
+uint32_t integer_of(const std::string& name, uint32_t side) {
+  if (has(name, {"width", "height", "resolution", "size", "extent"})) return side;
+  return has(name, {"num", "count", "samples", "spp", "rays", "bounces", "depth", "steps", "iterations"}) ? 4
+                                                                                                          : 0;
+}
+
+std::string number_text(double value, bool is_real) {
+  if (!is_real) return fmt::format("{}", int64_t(value));
+  const std::string text = fmt::format("{:.6g}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text == "-0.0" ? "0.0" : text;
+}
+
+std::string numbers_text(const std::string& name, const BlockType& type, uint32_t side) {
+  const bool is_real = type.number[0] == 'f';
+  const size_t count = type.offsets.size();
+  std::vector<std::string> out;
+  const Matrix matrix = matrix_of(name);
+  const std::array<double, 4> vector = vector_of(name, count > 1, side);
+  for (size_t i = 0; i < count; ++i) {
+    double value = integer_of(name, side);
+    // Matrices of 3 x 3 and 3 x 4 numbers have 9 and 12; only square ones can be told apart by their number.
+    if (is_real && count > 4)
+      value = count == 16 ? matrix[i] : count == 9 ? matrix[i / 3 * 4 + i % 3] : double(i % 5 == 0);
+    else if (is_real)
+      value = vector[std::min<size_t>(i, 3)];
+    out.push_back(number_text(value, is_real));
+  }
+  return count == 1 ? out[0] : fmt::format("[{}]", fmt::join(out, ", "));
+}
+
+}  // namespace
+
+std::string usual_value(const std::string& name, const BlockType& type, uint32_t side) {
+  if (type.kind == BlockType::Kind::Array) {
+    const std::string each = usual_value(name, type.element[0], side);
+    return fmt::format("[{}]",
+                       fmt::join(std::vector<std::string>(std::min(type.count, kMostWritten), each), ", "));
+  }
+  if (type.kind == BlockType::Kind::Struct) {
+    std::vector<std::string> members;
+    for (const auto& member : type.members)
+      members.push_back(fmt::format("{} = {}", member.name, usual_value(member.name, member.type, side)));
+    return fmt::format("{{ {} }}", fmt::join(members, ", "));
+  }
+  std::string small = name;
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return numbers_text(small, type, side);
+}
+
+}  // namespace glint::pipeline

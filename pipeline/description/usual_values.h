@@ -1,0 +1,18 @@
+// Guesses values of shader parameters by their names, so that the first picture of a new pipeline shows
+// something.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "frontend/spirv/block_type.h"
+
+namespace glint::pipeline {
+
+// Returns a TOML value of a type: numbers, a list, or a table of members. Matrices, eyes and directions
+// belong to a camera at (0, 1, 4) that looks at the origin, lights shine from above, sizes are the launch's
+// `side`, other numbers of floating point are 1, and other integers are 0. Choice: a value that is 0
+// everywhere would make most pictures black.
+std::string usual_value(const std::string& name, const frontend::BlockType& type, uint32_t side);
+
+}  // namespace glint::pipeline
