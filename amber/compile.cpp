@@ -8,6 +8,7 @@
 
 #include "frontend/compile.h"
 #include "frontend/spirv/clamped_indices.h"
+#include "frontend/spirv/limits.h"
 #include "frontend/spirv/specialize.h"
 #include "frontend/spirv/spirv.h"
 
@@ -104,12 +105,15 @@ std::vector<uint32_t> assemble_or_compile(const Shader& shader, isa::Stage stage
       return frontend::glsl_text_to_spirv(shader.text, shader.path, stage, options);
     }
     case Language::SpirvHex:
-      return from_hex(shader);
+      words = from_hex(shader);
+      frontend::check_limits(words, shader.path, frontend::kDeepestValidated);
+      return words;
     case Language::SpirvBinary:
       if (shader.text.size() % 4)
         throw UserError({shader.path, 0, 0}, "not a SPIR-V module: it does not consist of words");
       words.resize(shader.text.size() / 4);
       std::memcpy(words.data(), shader.text.data(), shader.text.size());
+      frontend::check_limits(words, shader.path, frontend::kDeepestValidated);
       return words;
     case Language::SpirvText:
       break;

@@ -82,7 +82,7 @@ void count_copies(CallGraph& graph) {
 
 }  // namespace
 
-uint64_t check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& name) {
+InlinedSize check_inlined_size(const std::vector<uint32_t>& spirv, const std::string& name) {
   CallGraph graph = read(spirv);
   count_copies(graph);
   uint64_t all = 0, most = 0, calls = 0;
@@ -94,7 +94,7 @@ uint64_t check_inlined_size(const std::vector<uint32_t>& spirv, const std::strin
     calls = std::min(kMany, calls + function.copies * function.callees.size());
     if (size > most) most = size, largest = id;
   }
-  if (all <= kMostInlined) return calls;
+  if (all <= kMostInlined) return {all, calls};
   const auto amount = [](uint64_t n) {
     return n >= kMany ? std::string("more than a million million") : fmt::format("{}", n);
   };

@@ -3,11 +3,13 @@
 #include "frontend/spirv/limits.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <map>
 #include <set>
 #include <span>
 #include <spirv/unified1/spirv.hpp11>
+#include <tuple>
 #include <utility>
 
 #include "base/diagnostics.h"
@@ -21,8 +23,11 @@ namespace {
 using enum spv::Op;
 using Inst = std::span<const uint32_t>;
 
+// Counts constructs around a place, of both kinds and of loops alone.
+enum Kind : size_t { kConstructs, kLoops, kNumKinds };
+
 struct Place {
-  uint32_t depth = 0;
+  std::array<uint32_t, kNumKinds> depth{};
   isa::Line line;
 };
 
@@ -37,7 +42,7 @@ struct Survey {
     Place at;
   };
   struct Function {
-    Place deepest;
+    std::array<Place, kNumKinds> deepest;
     std::vector<Call> calls;
   };
   std::map<uint32_t, std::string> names;
@@ -77,7 +82,8 @@ class Reader {
       if (const auto pointee = out_.pointees.find(w[1]); pointee != out_.pointees.end())
         out_.variables[w[2]] = {bytes_of(pointee->second), {}};
     if (function_) control(op, w);
-    if (op == OpFunction && w.size() > 2) function_ = &out_.functions[w[2]], merges_.clear();
+    if (op == OpFunction && w.size() > 2)
+      function_ = &out_.functions[w[2]], around_.clear(), depth_before_.clear();
     if (op == OpFunctionEnd) function_ = nullptr;
   }
 
@@ -105,11 +111,15 @@ class Reader {
   // The blocks of a construct stand between its header and its merge block.
   void control(spv::Op op, Inst w) {
     if (op == OpLabel && w.size() > 1)
-      if (const auto at = std::find(merges_.begin(), merges_.end(), w[1]); at != merges_.end())
-        merges_.erase(at, merges_.end());
-    if ((op == OpSelectionMerge || op == OpLoopMerge) && w.size() > 1) merges_.push_back(w[1]);
-    const Place here{uint32_t(merges_.size()), lines.line()};
-    if (here.depth > function_->deepest.depth) function_->deepest = here;
+      if (const auto ended = depth_before_.find(w[1]); ended != depth_before_.end())
+        while (around_.size() > ended->second) around_.pop_back();
+    if ((op == OpSelectionMerge || op == OpLoopMerge) && w.size() > 1) {
+      depth_before_[w[1]] = around_.size();
+      around_.push_back((around_.empty() ? 0 : around_.back()) + (op == OpLoopMerge));
+    }
+    const Place here{{uint32_t(around_.size()), around_.empty() ? 0 : around_.back()}, lines.line()};
+    for (const Kind kind : {kConstructs, kLoops})
+      if (here.depth[kind] > function_->deepest[kind].depth[kind]) function_->deepest[kind] = here;
     if (op == OpFunctionCall && w.size() > 3) function_->calls.push_back({w[3], here});
     const bool is_access = op == OpStore || op == OpLoad || op == OpAccessChain ||
                            op == OpInBoundsAccessChain || op == OpFunctionCall || op == OpCopyMemory;
@@ -121,27 +131,41 @@ class Reader {
 
   Survey out_;
   Survey::Function* function_ = nullptr;
-  std::vector<uint32_t> merges_;  // of the constructs around the present block
+  std::vector<uint32_t> around_;             // of each construct around the present block: the loops up to it
+  std::map<uint32_t, size_t> depth_before_;  // by merge block: the depth around its construct
 };
 
 // Returns the deepest place of a function with what it calls. A function that calls itself is refused
 // elsewhere, and its inner call is not followed.
-Place deepest_of(const Survey& module, uint32_t id, std::map<uint32_t, Place>& known) {
+Place deepest_of(const Survey& module, Kind kind, uint32_t id, std::map<uint32_t, Place>& known) {
   if (const auto found = known.find(id); found != known.end()) return found->second;
   const auto function = module.functions.find(id);
   if (function == module.functions.end()) return {};
-  Place deepest = known[id] = function->second.deepest;
+  Place deepest = known[id] = function->second.deepest[kind];
   for (const Survey::Call& call : function->second.calls) {
-    Place inner = deepest_of(module, call.callee, known);
-    inner.depth += call.at.depth;
-    if (inner.depth > deepest.depth) deepest = inner;
+    Place inner = deepest_of(module, kind, call.callee, known);
+    inner.depth[kind] += call.at.depth[kind];
+    if (inner.depth[kind] > deepest.depth[kind]) deepest = inner;
   }
   return known[id] = deepest;
 }
 
+Place deepest_of(const Survey& module, Kind kind) {
+  std::map<uint32_t, Place> known;
+  Place deepest;
+  for (const auto& [id, function] : module.functions)
+    if (const Place here = deepest_of(module, kind, id, known); here.depth[kind] > deepest.depth[kind])
+      deepest = here;
+  return deepest;
+}
+
 }  // namespace
 
-void check_limits(const std::vector<uint32_t>& words, const std::string& name) {
+uint32_t nesting_of(const std::vector<uint32_t>& words) {
+  return deepest_of(Reader().read(words), kConstructs).depth[kConstructs];
+}
+
+void check_limits(const std::vector<uint32_t>& words, const std::string& name, uint32_t deepest) {
   Reader reader;
   const Survey module = reader.read(words);
   std::string message;
@@ -160,14 +184,13 @@ void check_limits(const std::vector<uint32_t>& words, const std::string& name) {
             variable.bytes >= kHuge ? "more than a million million" : fmt::format("{}", variable.bytes),
             kMostLocalBytes));
   }
-  std::map<uint32_t, Place> known;
-  Place deepest;
-  for (const auto& [id, function] : module.functions)
-    if (const Place here = deepest_of(module, id, known); here.depth > deepest.depth) deepest = here;
-  if (deepest.depth > kDeepestNesting)
-    add(deepest.line, fmt::format("selections and loops lie {} deep in each other, with those of called "
-                                  "functions, and at most {} are possible",
-                                  deepest.depth, kDeepestNesting));
+  for (const auto& [kind, what, most] :
+       {std::tuple{kConstructs, "selections and loops", deepest}, {kLoops, "loops", kDeepestLoops}})
+    if (const Place place = deepest_of(module, kind); place.depth[kind] > most)
+      add(place.line,
+          fmt::format("{} lie {} deep in each other, with those of called functions, and at most {} "
+                      "are possible",
+                      what, place.depth[kind], most));
   if (!message.empty()) throw UnsupportedError(fmt::format("{}: not supported:{}", name, message));
 }
 

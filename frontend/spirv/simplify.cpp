@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <span>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv/unified1/spirv.hpp11>
 #include <sstream>
@@ -19,6 +20,7 @@
 #include "frontend/spirv/kept_loops.h"
 #include "frontend/spirv/limits.h"
 #include "frontend/spirv/module_repairs.h"
+#include "frontend/spirv/promoted_variables.h"
 #include "frontend/spirv/shared_blocks.h"
 #include "frontend/spirv/short_blocks.h"
 #include "frontend/spirv/spirv.h"
@@ -30,6 +32,11 @@ namespace {
 
 // This pass is always first, because imports of non-semantic sets make later passes skip the module.
 constexpr const char* kStripForeign = "--strip-nonsemantic";
+constexpr const char* kSsaRewrite = "--ssa-rewrite";
+
+// Choice: modules with more instructions after inlining are optimised in parts (after_passes()). Smaller ones
+// cannot have functions that need it, and reading them again for each part would cost time.
+constexpr uint64_t kLargeModule = 8192;
 
 // Some passes of -O are left out on purpose. Redundancy elimination merges loads of volatile built-ins across
 // reportIntersectionEXT, simplify-instructions contracts a*b+c to Fma, ccp folds sin and cos with the host's
@@ -42,7 +49,7 @@ const std::vector<std::string>& pass_list() {
       // the copies that inlining makes.
       "--eliminate-dead-functions", "--eliminate-local-single-block", "--eliminate-local-single-store",
       "--scalar-replacement=100", "--convert-local-access-chains", "--eliminate-local-single-block",
-      "--eliminate-local-single-store", "--ssa-rewrite",
+      "--eliminate-local-single-store", kSsaRewrite,
       // Two passes are left out here. Removal of dead code crashes on calls that take addresses of buffers.
       // Merging of blocks moves calls into continue constructs, where functions that end an any-hit shader
       // are not inlined.
@@ -50,7 +57,7 @@ const std::vector<std::string>& pass_list() {
       "--private-to-local", "--eliminate-local-single-block", "--eliminate-local-single-store",
       "--eliminate-dead-code-aggressive", "--scalar-replacement=100", "--convert-local-access-chains",
       "--eliminate-local-single-block", "--eliminate-local-single-store", "--eliminate-dead-code-aggressive",
-      "--ssa-rewrite", "--eliminate-dead-code-aggressive", "--vector-dce", "--eliminate-dead-inserts",
+      kSsaRewrite, "--eliminate-dead-code-aggressive", "--vector-dce", "--eliminate-dead-inserts",
       "--eliminate-dead-branches", "--cfg-cleanup", "--merge-blocks", "--eliminate-dead-code-aggressive",
       "--eliminate-dead-const"};
   return kPasses;
@@ -127,20 +134,16 @@ std::string timed_validation(const std::vector<uint32_t>& spirv, const char* whe
   return validate_spirv(spirv);
 }
 
-// Returns the module after `passes`. When they fail, it returns nothing, and the report says why.
-std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                   Report* report) {
-  std::vector<uint32_t> extensions, output;
-  std::vector<uint32_t> input = without_extensions(spirv, &extensions);
-  allow_inlining(input);
-  const bool has_overlap = has_overlapping_shared_blocks(input);
-  if (has_overlap) move_variables(input, spv::StorageClass::Workgroup, spv::StorageClass::CrossWorkgroup);
+// Runs passes over a module without extensions. It returns nothing when they fail.
+std::vector<uint32_t> optimise(const std::vector<uint32_t>& input, std::span<const std::string> passes,
+                               Report* report) {
+  std::vector<uint32_t> output;
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
   optimizer.SetMessageConsumer(
       [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
         if (level <= SPV_MSG_ERROR) report->messages += fmt::format("{}\n", text);
       });
-  if (!optimizer.RegisterPassesFromFlags(passes))
+  if (!optimizer.RegisterPassesFromFlags({passes.begin(), passes.end()}))
     throw Error(Exit::Failure, "SPIRV-Tools lacks a pass of R1: " + report->messages);
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // The module is validated later, with the extensions in place.
@@ -151,15 +154,37 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
     return optimizer.Run(input.data(), input.size(), &output, options);
   }();
   if (report->times) add_pass_times(times.str(), *report->times);
-  if (!done) return {};
+  return done ? output : std::vector<uint32_t>{};
+}
+
+// Returns the module after `passes`. When they fail, it returns nothing, and the report says why. In a large
+// module, what is too much for ssa-rewrite is promoted before it.
+std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+                                   bool is_large, Report* report) {
+  std::vector<uint32_t> extensions;
+  std::vector<uint32_t> output = without_extensions(spirv, &extensions);
+  allow_inlining(output);
+  const bool has_overlap = has_overlapping_shared_blocks(output);
+  if (has_overlap) move_variables(output, spv::StorageClass::Workgroup, spv::StorageClass::CrossWorkgroup);
+  for (auto first = passes.begin(); first != passes.end() && !output.empty();) {
+    const auto last = is_large ? std::find(first + 1, passes.end(), kSsaRewrite) : passes.end();
+    if (*first == kSsaRewrite) {
+      const PassTimer timer(report->times, "promotion", "");
+      output = with_promoted_variables(std::move(output), kMostAccesses);
+    }
+    output = optimise(output, {first, last}, report);
+    first = last;
+  }
+  if (output.empty()) return {};
   if (has_overlap) move_variables(output, spv::StorageClass::CrossWorkgroup, spv::StorageClass::Workgroup);
   return with_extensions(std::move(output), extensions);
 }
 
 // Returns the module after `passes`, or nothing when they fail or their result is not valid.
 std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
-                                         const std::vector<std::string>& passes, Report* report) {
-  std::vector<uint32_t> output = after_passes(spirv, passes, report);
+                                         const std::vector<std::string>& passes, bool is_large,
+                                         Report* report) {
+  std::vector<uint32_t> output = after_passes(spirv, passes, is_large, report);
   if (output.empty()) return {};
   output = without_stray_lines(with_debug_prints(without_marks(output)));
   const std::string after = timed_validation(output, "after", report->times);
@@ -174,21 +199,23 @@ constexpr uint64_t kMostMarkedCalls = 2000;
 // Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
 // names its calls.
 std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                uint64_t calls, Report* report) {
+                                const InlinedSize& size, Report* report) {
+  const bool is_large = size.instructions > kLargeModule;
   // A block with few calls can become one with many, when the callees have calls in their turn.
-  const uint32_t calls_of_block = calls <= kMostMarkedCalls ? 64 : 1;
+  const uint32_t calls_of_block = size.calls <= kMostMarkedCalls ? 64 : 1;
   const std::vector<uint32_t> input =
       with_plain_lines(with_kept_loops(with_known_prints(with_short_blocks(spirv, calls_of_block))));
   const std::optional<std::vector<uint32_t>> marked =
-      calls <= kMostMarkedCalls ? with_inline_scopes(input) : std::nullopt;
+      size.calls <= kMostMarkedCalls ? with_inline_scopes(input) : std::nullopt;
   if (marked) {
     // The first pass strips foreign sets, so it would strip the marks. A marked module does not need it,
     // because it has no other such sets.
     Report of_marks{{}, report->times};
-    std::vector<uint32_t> output = valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, &of_marks);
+    std::vector<uint32_t> output =
+        valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, is_large, &of_marks);
     if (!output.empty()) return output;
   }
-  return valid_after_passes(input, passes, report);
+  return valid_after_passes(input, passes, is_large, report);
 }
 
 // Changes array lengths from 0 to 1 when they are 0 because nobody set a specialisation constant.
@@ -197,7 +224,7 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
   if (!has_specialised_lengths(spirv)) return spirv;
   Report report;
   std::vector<std::string> names;
-  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), &report);
+  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), false, &report);
   if (folded.empty()) return spirv;
   std::vector<uint32_t> output = with_positive_lengths(folded, &names);
   if (output.size() == folded.size()) return spirv;
@@ -220,13 +247,13 @@ std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string&
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : timed_validation(spirv, "before", times);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
-  const uint64_t calls = check_inlined_size(spirv, name);
+  const InlinedSize size = check_inlined_size(spirv, name);
   Report report{{}, times};
   for (const auto* passes : {&pass_list(), &inlining_only()}) {
-    std::vector<uint32_t> output = optimised(spirv, *passes, calls, &report);
+    std::vector<uint32_t> output = optimised(spirv, *passes, size, &report);
     if (output.empty()) continue;
     if (!has_calls(output)) return output;
-    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, calls, &report);
+    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, size, &report);
     return again.empty() || has_calls(again) ? output : again;
   }
   warnings.warning({name, 0, 0},

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <spirv-tools/libspirv.hpp>
@@ -107,10 +108,10 @@ std::string second_incoming(std::span<const uint32_t> words) {
   return {};
 }
 
-}  // namespace
-
-std::string validate_spirv(const std::vector<uint32_t>& words) {
+// Returns what is wrong with a module, or an empty text.
+std::string messages_on(const std::vector<uint32_t>& words) {
   if (std::string second = second_incoming(words); !second.empty()) return second;
+  if (nesting_of(words) > kDeepestValidated) return missing_components(words);
   std::string messages;
   bool only_false_alarms = false;
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
@@ -128,6 +129,18 @@ std::string validate_spirv(const std::vector<uint32_t>& words) {
   if (tools.Validate(words.data(), words.size(), options)) return missing_components(words);
   if (messages.empty() && only_false_alarms) return {};
   return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
+}
+
+}  // namespace
+
+std::string validate_spirv(const std::vector<uint32_t>& words) {
+  // A module is validated where it is read and again where it is simplified. The second time costs nothing.
+  static std::mutex mutex;
+  static std::vector<uint32_t> last_valid;
+  if (const std::lock_guard lock(mutex); !words.empty() && words == last_valid) return {};
+  std::string messages = messages_on(words);
+  if (const std::lock_guard lock(mutex); messages.empty()) last_valid = words;
+  return messages;
 }
 
 bool is_spirv_file(const std::string& path) {
@@ -151,7 +164,7 @@ std::vector<uint32_t> read_words(const std::string& path) {
   }
   words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
-  check_limits(words, path);
+  check_limits(words, path, kDeepestValidated);
   const std::string invalid = validate_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "invalid SPIR-V\n" + invalid);
   return words;
@@ -189,6 +202,7 @@ std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string&
     std::vector<uint32_t> words;
     const bool done = assemble_as(version, text, &words, &where, &message);
     if (!done && newest.empty()) throw UserError(where, message);
+    if (done) check_limits(words, name, kDeepestValidated);
     if (done && validate_spirv(words).empty()) return words;
     if (newest.empty()) newest = std::move(words);
   }

@@ -9,7 +9,7 @@ namespace glint::frontend {
 
 // Returns an empty text when `words` are valid SPIR-V for Vulkan 1.3 with scalar block layout, and otherwise
 // the validator's messages, one per line. Known false alarms are left out (is_false_alarm() in the .cpp
-// file).
+// file), and modules deeper than kDeepestValidated (limits.h) are hardly looked at.
 std::string validate_spirv(const std::vector<uint32_t>& words);
 
 // Throws UnsupportedError with the numbers of the capabilities that the installed SPIRV-Tools do not know and

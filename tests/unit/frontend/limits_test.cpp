@@ -60,15 +60,17 @@ TEST_CASE("what is too large, too deep or too long is refused at its file and li
     std::string name, source, message;
   };
   const std::vector<Row> rows = {
-      {"ifs", shader(times(1000, "if (x > 2.0) {\n") + "x += 1.0;" + times(1000, "}")),
-       "t.comp:1003: selections and loops lie 1000 deep"},
+      {"ifs", shader(times(1100, "if (x > 2.0) {\n") + "x += 1.0;" + times(1100, "}")),
+       "t.comp:1103: selections and loops lie 1100 deep in each other, with those of called functions, and "
+       "at most "
+       "1023 are possible"},
       {"loops", shader(times(300, "for (int i = 0; i < int(x); ++i) {\n") + "x += 1.0;" + times(300, "}")),
-       "300 deep"},
+       ": loops lie 300 deep in each other, with those of called functions, and at most 255"},
       {"nesting of called functions",
-       shader("x = f(x);" + times(200, "if (x > 2.0) {\n") + "x = f(x);" + times(200, "}"),
-              "float f(float x) {\n" + times(60, "if (x > 2.0) {") + "\nx += 1.0;\n" + times(60, "}") +
+       shader("x = f(x);" + times(600, "if (x > 2.0) {\n") + "x = f(x);" + times(600, "}"),
+              "float f(float x) {\n" + times(500, "if (x > 2.0) {") + "\nx += 1.0;\n" + times(500, "}") +
                   "return x; }\n"),
-       "260 deep"},
+       "1100 deep"},
       {"terms", shader("x = " + times(400'000, "x + ") + "x;"), "t.comp:4: error: the shader has 800"},
       {"macros", shader("x = A25 x;", nested_macros(25)),
        "t.comp:30: error: 'A25' expands to 67108864 tokens"},
@@ -97,6 +99,20 @@ TEST_CASE("the largest array, the deepest nesting and long texts compile") {
                   "mul.rn.f32") == 1);
   CHECK(count_ops(compiled(shader("x = x" + times(20'000, " + x") + ";")), "add.rn.f32") == 20'000);
   CHECK(count_ops(compiled(shader("x = A8 x;", nested_macros(8))), "add.rn.f32") == 256);
+}
+
+TEST_CASE(
+    "SPIR-V that the validator would take too long to look at is refused, and that of glslang is taken") {
+  const std::string deep = shader(times(300, "if (x > 2.0) {\n") + "x *= 1.5;" + times(300, "}"));
+  const std::string text = disassemble_spirv(glsl_text_to_spirv(deep, "t.comp", isa::Stage::Compute, {}));
+  CHECK_THROWS_WITH(assemble_spirv(text, "t.spvasm"),
+                    Contains("t.comp:303: ") && Contains("at most 255 are"));
+}
+
+TEST_CASE("a chain of a thousand `else if` compiles") {
+  const std::string chain =
+      times(1000, [](int i) { return "if (x > " + std::to_string(2000 - i) + ".0) x *= 1.5;\nelse "; });
+  CHECK(count_ops(compiled(shader(chain + "x = 0.0;")), "mul.rn.f32") == 1000);
 }
 
 TEST_CASE("thousands of calls in one block, or of functions that call each other twice, are inlined") {

@@ -1,0 +1,160 @@
+// Tests that shaders too large for the optimiser's pass to SSA form compute what C++ computes, and that
+// promoted modules stay valid.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/spirv/promoted_variables.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "frontend/spirv/spirv.h"
+#include "tests/support/catch.h"
+#include "tests/unit/frontend/shader_lab.h"
+
+namespace glint::frontend {
+namespace {
+
+const std::vector<uint32_t> kWords = {0,  1,   2,    3,           7,           31,
+                                      32, 100, 1999, 0x7fff'ffff, 0xdead'beef, 0x1234'5678};
+
+std::string repeated(int n, const std::function<std::string(std::string)>& text) {
+  std::string all;
+  for (int i = 0; i < n; ++i) all += text(std::to_string(i));
+  return all;
+}
+
+long count_ops(const Words& words, spv::Op op) {
+  long n = 0;
+  for (size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) n += op_of(words[at]) == op;
+  return n;
+}
+
+TEST_CASE("thousands of selections, in a loop with continue and break, compute what they say") {
+  constexpr uint32_t kSelections = 1200;
+  const std::string code = repeated(kSelections, [](const std::string& k) {
+    return "if (((x >> (" + k + "u & 31u)) & 1u) != 0u) y = y * 3u + z; else { z ^= y + " + k + "u; }\n";
+  });
+  const auto got = lab::run(
+      kWords, "uint z = 1u, w;\nfor (uint i = 0u; i < 4u; ++i) {\nif (i == (x & 3u)) continue;\n" + code +
+                  "if (y > 0xf0000000u) break;\nif (i == 3u) w = y;\n y += w & 0u;\n}\ny += z;");
+  for (size_t lane = 0; lane < kWords.size(); ++lane) {
+    const uint32_t x = kWords[lane];
+    uint32_t y = 0, z = 1;
+    for (uint32_t i = 0; i < 4; ++i) {
+      if (i == (x & 3)) continue;
+      for (uint32_t k = 0; k < kSelections; ++k)
+        if ((x >> (k & 31)) & 1)
+          y = y * 3 + z;
+        else
+          z ^= y + k;
+      if (y > 0xf000'0000) break;
+    }
+    CAPTURE(x);
+    CHECK(got[lane] == y + z);
+  }
+}
+
+TEST_CASE("a switch with thousands of cases and a chain of a thousand `else if` compute what they say") {
+  const auto cases = [](const std::string& k) {
+    return "case " + k + ": y = y * 5u + " + k + "u;" +
+           (k.back() == '7' ? "\n" : " break;\n");  // 7 falls through.
+  };
+  const auto chain = [](const std::string& k) {
+    return "if ((x & 0x3ffu) == " + k + "u) y += " + k + "u * 7u;\nelse ";
+  };
+  const auto got = lab::run(kWords, "y = 3u;\nswitch (int(x)) {\n" + repeated(2000, cases) +
+                                        "default: y ^= x; }\n" + repeated(1000, chain) + "y += 11u;\n");
+  for (size_t lane = 0; lane < kWords.size(); ++lane) {
+    const uint32_t x = kWords[lane];
+    uint32_t y = 3;
+    if (x >= 2000) y ^= x;
+    if (x < 2000) {
+      y = y * 5 + x;
+      if (x % 10 == 7) y = y * 5 + x + 1;
+    }
+    const uint32_t link = x & 0x3ff;
+    y += link < 1000 ? link * 7 : 11;
+    CAPTURE(x);
+    CHECK(got[lane] == y);
+  }
+}
+
+TEST_CASE("promoted modules are valid, and a second promotion finds nothing") {
+  int tried = 0;
+  for (const auto& file :
+       std::filesystem::recursive_directory_iterator(std::string(GLINT_SOURCE_DIR) + "/tests/shaders/glsl")) {
+    const std::string path = file.path().string();
+    if (!stage_of_file(path)) continue;
+    CAPTURE(path);
+    Words words;
+    try {
+      words = glsl_to_spirv(path, {});
+    } catch (const Error&) {
+      continue;  // Some are mistakes on purpose, and some need macros.
+    }
+    ++tried;
+    const Words promoted = with_promoted_variables(words, 0);
+    CHECK(validate_spirv(promoted) == "");
+    CHECK(count_ops(promoted, spv::Op::OpVariable) <= count_ops(words, spv::Op::OpVariable));
+    CHECK(with_promoted_variables(promoted, 0) == promoted);
+    CHECK(with_promoted_variables(words, 1'000'000) == words);
+  }
+  CHECK(tried > 50);
+}
+
+TEST_CASE("a value that nothing has stored is undefined, and an initial value counts as stored") {
+  const Words words = assemble_spirv(R"(
+OpCapability Shader
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %out
+OpExecutionMode %main LocalSize 1 1 1
+OpName %a "a"
+OpDecorate %a RelaxedPrecision
+OpDecorate %load RelaxedPrecision
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %out DescriptorSet 0
+OpDecorate %out Binding 0
+%void = OpTypeVoid
+%function = OpTypeFunction %void
+%uint = OpTypeInt 32 0
+%bool = OpTypeBool
+%seven = OpConstant %uint 7
+%zero = OpConstant %uint 0
+%pointer = OpTypePointer Function %uint
+%block = OpTypeStruct %uint
+%to_block = OpTypePointer StorageBuffer %block
+%to_word = OpTypePointer StorageBuffer %uint
+%out = OpVariable %to_block StorageBuffer
+%main = OpFunction %void None %function
+%entry = OpLabel
+%a = OpVariable %pointer Function %seven
+%b = OpVariable %pointer Function
+%kept = OpVariable %pointer Function
+%load = OpLoad %uint %a
+%hidden = OpLoad %uint %kept Volatile
+%is = OpIEqual %bool %load %hidden
+OpSelectionMerge %end None
+OpBranchConditional %is %then %end
+%then = OpLabel
+OpStore %b %load
+OpBranch %end
+%end = OpLabel
+%sum = OpLoad %uint %b
+%place = OpAccessChain %to_word %out %zero
+OpStore %place %sum
+OpReturn
+OpFunctionEnd
+)",
+                                     "t.spvasm");
+  const Words promoted = with_promoted_variables(words, 0);
+  CHECK(validate_spirv(promoted) == "");
+  CHECK(count_ops(promoted, spv::Op::OpVariable) == 2);  // the block and the volatile variable
+  CHECK(count_ops(promoted, spv::Op::OpPhi) == 1);
+  CHECK(count_ops(promoted, spv::Op::OpUndef) == 1);
+  CHECK(count_ops(promoted, spv::Op::OpName) == 0);
+  CHECK(count_ops(promoted, spv::Op::OpDecorate) == count_ops(words, spv::Op::OpDecorate) - 2);
+}
+
+}  // namespace
+}  // namespace glint::frontend
