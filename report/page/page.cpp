@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "report/page/collection.h"
 #include "report/page/columns.h"
 #include "report/page/parts.h"
 #include "report/page/suite.h"
@@ -185,7 +186,7 @@ std::string section(const char* id, const char* title, const char* lead, const s
 
 // Returns the sections that can be read without script. The script adds its figures.
 std::string static_sections(const Json& data) {
-  std::string out = partial_runs(data["runs"]) + suite_sections(data);
+  std::string out = partial_runs(data["runs"]) + collection_sections(data) + suite_sections(data);
   if (data["runs"].empty()) return out;
   return out +
          section("configuration", "Configuration", config_lead(data["runs"]).c_str(),

@@ -15,7 +15,8 @@ struct PageParts {
   std::string unpack;  // a script that unpacks the other one and runs it
 };
 
-// Returns the page. `data` is page_data(), to which "characterizations" and "models" (suite.h) may be added;
+// Returns the page. `data` is page_data(), to which "characterizations" and "models" (suite.h) and
+// "collections" (collection.h) may be added;
 // the page holds it as page_columns() returns it. Throws UserError when the frame lacks a place.
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts);
 

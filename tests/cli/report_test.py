@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: report_test.py GLINT SOURCE_DIR SUITE..."""
 import csv
+import json
 import math
 import pathlib
 import re
 import shutil
 import struct
+import tomllib
+import urllib.parse
 
 import glint_case
 from glint_case import ROOT
@@ -157,6 +160,55 @@ class Page(ReportTest):
         self.assertEqual([run["metrics"]["cycles"] for run in page["runs"]], [self.total(name, "gpu.cycles") for name in sorted(self.runs)])
         self.write("none/metrics.csv", "workload\n")
         self.expect(2, ["none", "no run directory", "glint bench"], "report", "none")
+
+    def test_a_sweep_has_a_row_for_each_point_that_leads_to_its_own_report(self):
+        names = {"WKND-rt.warps=8": "wknd", "WKND-50% #2": "slow"}
+        for name, run in names.items():
+            shutil.copytree(self.runs[run], self.folder / "sweep" / name)
+        shutil.copytree(self.runs["wknd"], self.folder / "sweep/failed")
+        facts = json.loads((self.folder / "sweep/failed/run.json").read_text())
+        self.write("sweep/failed/run.json", json.dumps(facts | {"exit": 4, "message": "it fell over"}))
+        plan = {"workloads": ["WKND"], "axes": {"rt.warps": [8], "config": ["mobile"]}, "runs": [*names, "failed", "never"]}
+        self.write("sweep/sweep.json", json.dumps(plan))
+        done = self.glint("report", "sweep")
+        self.assertEqual((done.returncode, done.stdout), (0, "sweep/report.html\n"), done.stderr)
+        page = (self.folder / "sweep/report.html").read_text()
+        section = page[page.index('<section id="sweep">'):]
+        section = section[:section.index("</section>")]
+        self.assertIn("2 of 4 points", section)
+        metrics = [dict(line.split()[:2] for line in self.glint("stats", self.runs[run], "--format", "metrics").stdout.splitlines()) for run in names.values()]
+        rows = re.findall(r'<tr><th scope="row"><a href="([^"]+)">([^<]+)</a></th>(.*?)</tr>', section)
+        self.assertEqual([name for _, name, _ in rows], list(names))
+        for (link, name, cells), known in zip(rows, metrics):
+            self.assertTrue((self.folder / "sweep" / urllib.parse.unquote(link)).is_file(), link)
+            shown = re.findall(r'<td class="n">(.*?)</td>', cells)
+            config = tomllib.loads((self.folder / "sweep" / name / "config.toml").read_text())
+            self.assertEqual(shown[:2], [str(config["rt"]["warps"]), "mobile"])
+            self.assertEqual(shown[2].replace("\u202f", ""), known["cycles"])
+        self.assertRegex(section, r"failed</th><td[^>]*>[^<]*it fell over")
+        self.assertRegex(section, r"never</th><td[^>]*>it has not been run")
+        own = (self.folder / "sweep/WKND-rt.warps=8/report.html").read_text()
+        self.assertNotIn('<section id="sweep">', own)
+        self.assertEqual(len(self.document(own)["runs"]), 1)
+        # Links start at the page, wherever it is.
+        self.assertEqual(self.glint("report", "sweep", "-o", "elsewhere.html").returncode, 0)
+        self.assertIn('href="sweep/WKND-rt.warps=8/report.html"', (self.folder / "elsewhere.html").read_text())
+        self.write("sweep/sweep.json", json.dumps(plan | {"runs": ["never"]}))
+        self.expect(2, ["none of the 1 points", "goes on where it stopped"], "report", "sweep")
+        self.write("sweep/sweep.json", '{"axes": 3}')
+        self.expect(2, ["no plan of a sweep"], "report", "sweep")
+
+    def test_the_page_of_a_bench_names_the_workloads_that_failed(self):
+        done = self.glint("bench", "WKND_PT", "--size", "8x8", "--spp", "1", "--out", "b")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.glint("report", "b").returncode, 0)
+        self.assertNotIn("Workloads that failed", (self.folder / "b/report.html").read_text())
+        shutil.copytree(self.folder / "b/WKND_PT", self.folder / "b/SHIP_SH")
+        facts = json.loads((self.folder / "b/SHIP_SH/run.json").read_text())
+        self.write("b/SHIP_SH/run.json", json.dumps(facts | {"exit": 4, "message": "it <fell> over"}))
+        self.assertEqual(self.glint("report", "b").returncode, 0)
+        page = (self.folder / "b/report.html").read_text()
+        self.assertRegex(page, r'(?s)<h2>Workloads that failed</h2>.*1 run that.*SHIP_SH</th><td[^>]*>[^<]*it &lt;fell&gt; over')
 
     def test_bad_input_is_refused_with_a_reason(self):
         copy = self.folder / "copy"

@@ -62,25 +62,29 @@ std::set<std::string> workloads_of(const fs::path& metrics) {
 
 }  // namespace
 
-std::vector<std::string> bench_runs(const std::string& folder) {
+BenchContents bench_contents(const std::string& folder) {
   const std::set<std::string> members = workloads_of(fs::path(folder) / "metrics.csv");
-  std::vector<std::string> out, others;
+  BenchContents out;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (!fs::exists(entry.path() / "run.json")) continue;
     const std::string name = entry.path().filename().string();
-    if (members.empty() || members.contains(name))
-      out.push_back(entry.path().string());
-    else
-      others.push_back(name);
+    (members.empty() || members.contains(name) ? out.runs : out.others).push_back(entry.path().string());
   }
-  std::ranges::sort(out);
-  std::ranges::sort(others);
+  std::ranges::sort(out.runs);
+  std::ranges::sort(out.others);
+  return out;
+}
+
+std::vector<std::string> bench_runs(const std::string& folder) {
+  const BenchContents contents = bench_contents(folder);
+  std::vector<std::string> others;
+  for (const std::string& run : contents.others) others.push_back(fs::path(run).filename().string());
   if (!others.empty())
     fmt::print(stderr,
                "warning: {}: these runs are left out, because its metrics.csv does not have them (they "
                "failed, or no bench made them): {}\n",
                folder, fmt::join(others, " "));
-  return out;
+  return contents.runs;
 }
 
 std::vector<std::pair<std::string, std::string>> finished_runs(const std::string& folder) {

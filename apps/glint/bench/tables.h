@@ -21,6 +21,13 @@ std::string bench_record(const report::FileList& written);  // the text of that 
 // says that the bench has written something else.
 std::string read_metrics(const std::string& path);
 
+// Holds directories of runs in a folder of `glint bench`, ordered by name. `others` are those that its
+// metrics.csv does not have: failed ones, or those of `glint run`.
+struct BenchContents {
+  std::vector<std::string> runs, others;
+};
+BenchContents bench_contents(const std::string& folder);
+
 // Returns the directories of the runs in a folder of `glint bench`, ordered by name. These are the runs of
 // its metrics.csv, which benches completed. Other runs in the folder (failed ones, or those of `glint run`)
 // are named on stderr. When metrics.csv has no rows or does not exist, all runs are returned.

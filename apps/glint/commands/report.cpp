@@ -1,11 +1,13 @@
 // Declares `glint report RUN...`, which writes one HTML page of finished runs and of what is known of suites.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
@@ -49,27 +51,56 @@ report::PageRun page_run(const Resources& resources, const std::string& director
   return run;
 }
 
+std::string page_of(const Session& session, const nlohmann::ordered_json& data) {
+  const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
+  return report::page(data, {.frame = web("report.html"),
+                             .style = web("report.css"),
+                             .script = web("report.js"),
+                             .unpack = web("unpack.js")});
+}
+
+// Returns a relative path as a link has it: bytes other than letters, digits and a few marks become %XX.
+std::string link_of(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                          std::string_view("/-._~=,+@").find(c) != std::string_view::npos;
+    out += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+// Writes a report into the directory of each point of a sweep, and lets the points lead there from `path`.
+void write_points(const Session& session, const std::vector<report::PageRun>& runs, const std::string& path,
+                  ReportInputs& inputs) {
+  const std::filesystem::path from = path == "-" ? "." : std::filesystem::absolute(path).parent_path();
+  for (nlohmann::ordered_json& one : inputs.collections)
+    for (nlohmann::ordered_json& point : one["points"]) {
+      const std::string directory = point["directory"], file = directory + "/report.html";
+      point["link"] = link_of(std::filesystem::proximate(file, from).generic_string());
+      const auto run = std::find_if(runs.begin(), runs.end(),
+                                    [&](const report::PageRun& each) { return each.directory == directory; });
+      write_output(file, page_of(session, report::page_data({*run}, GLINT_VERSION)));
+    }
+}
+
 Exit write_report(const Session& session, const std::vector<std::string>& named, const std::string& out,
                   const std::optional<report::TimelineRequest>& timeline) {
-  const ReportInputs inputs = report_inputs(named);
+  ReportInputs inputs = report_inputs(named);
   std::vector<report::PageRun> runs;
   for (const std::string& directory : inputs.runs) {
     runs.push_back(page_run(session.resources, directory));
     runs.back().timeline = timeline;
   }
-  nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
-  add_suites(inputs, data);
-  tell_of_files(inputs.runs);
-  const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
-  const std::string page = report::page(data, {.frame = web("report.html"),
-                                               .style = web("report.css"),
-                                               .script = web("report.js"),
-                                               .unpack = web("unpack.js")});
   const std::string path = !out.empty() ? out
                            : named.size() == 1 && std::filesystem::is_directory(named[0])
                                ? named[0] + "/report.html"
                                : "report.html";
-  write_output(path, page);
+  nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
+  write_points(session, runs, path, inputs);
+  add_suites(inputs, data);
+  tell_of_files(inputs.runs);
+  write_output(path, page_of(session, data));
   if (path != "-") print_output("{}\n", path);
   return Exit::Ok;
 }
@@ -85,10 +116,12 @@ void add_report(Command app, Session& session) {
   auto options = std::make_shared<Options>();
   Command command = app.add_subcommand("report", "Write a page of figures about finished runs");
   command
-      .add_option("RUN", options->runs,
-                  "What to report: run directories, folders of `glint bench` with what `glint characterize` "
-                  "and `glint model` have left there, or folders and tables of these two alone. With several "
-                  "runs, figures stand side by side and changes are against the first")
+      .add_option(
+          "RUN", options->runs,
+          "What to report: run directories, folders of sweeps, folders of `glint bench` with what `glint "
+          "characterize` and `glint model` have left there, or folders and tables of these two alone. With "
+          "several "
+          "runs, figures stand side by side and changes are against the first")
       .required();
   command.add_option(
       "-o,--out", options->out,

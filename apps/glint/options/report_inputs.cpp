@@ -11,6 +11,7 @@
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
 #include "report/analytical/model_table.h"
+#include "report/files/run_record.h"
 #include "report/page/suite.h"
 
 namespace glint::app {
@@ -36,6 +37,53 @@ void add_characterization(const fs::path& file, const std::string& folder, Repor
       {folder, report::read_characterization(read_file(file.string()), file.string())});
 }
 
+// Returns why a run cannot be shown, or "" when it is complete.
+std::string why_incomplete(const fs::path& directory) {
+  if (!fs::exists(directory / "run.json")) return "it has not been run";
+  try {
+    report::check_finished(directory.string());
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+nlohmann::ordered_json failure(const fs::path& directory, const std::string& reason) {
+  return {{"name", directory.filename().string()}, {"reason", reason}};
+}
+
+nlohmann::ordered_json collection(const char* kind, const std::string& source) {
+  const auto none = nlohmann::ordered_json::array();
+  return {{"kind", kind}, {"source", source}, {"keys", none}, {"points", none}, {"failed", none}};
+}
+
+// Adds the points of a sweep that are complete, and names the others.
+void add_sweep(const std::string& folder, ReportInputs& out) {
+  const std::string path = folder + "/sweep.json";
+  const auto plan = nlohmann::ordered_json::parse(read_file(path), nullptr, false);
+  const auto is_text = [](const auto& value) { return value.is_string(); };
+  if (!plan.is_object() || !plan.contains("axes") || !plan["axes"].is_object() || !plan.contains("runs") ||
+      !plan["runs"].is_array() || !std::all_of(plan["runs"].begin(), plan["runs"].end(), is_text))
+    throw UserError({path, 0, 0}, "this is no plan of a sweep with its axes and runs",
+                    "glint.sweep() in Python writes it: call it again");
+  nlohmann::ordered_json one = collection("sweep", folder);
+  for (const auto& [key, values] : plan["axes"].items()) one["keys"].push_back(key);
+  for (const std::string name : plan["runs"]) {
+    const fs::path point = fs::path(folder) / name;
+    if (const std::string reason = why_incomplete(point); !reason.empty()) {
+      one["failed"].push_back(failure(point, reason));
+      continue;
+    }
+    out.runs.push_back(point.string());
+    one["points"].push_back({{"name", name}, {"directory", point.string()}});
+  }
+  if (one["points"].empty())
+    throw UserError({folder, 0, 0},
+                    fmt::format("none of the {} points of the sweep is complete", one["failed"].size()),
+                    "call glint.sweep() again: it goes on where it stopped");
+  out.collections.push_back(std::move(one));
+}
+
 void add_bench(const std::string& name, ReportInputs& out) {
   const fs::path folder(name);
   const std::vector<std::string> runs = bench_runs(name);
@@ -47,6 +95,13 @@ void add_bench(const std::string& name, ReportInputs& out) {
   if (runs.empty() && !has_models && !has_characterization)
     throw UserError({name, 0, 0}, "it has metrics.csv and no run directory", "'glint bench' writes both");
   out.runs.insert(out.runs.end(), runs.begin(), runs.end());
+  nlohmann::ordered_json one = collection("bench", name);
+  for (const std::string& directory : bench_contents(name).others) {
+    const std::string reason = why_incomplete(directory);
+    one["failed"].push_back(failure(
+        directory, reason.empty() ? "this run is complete, but no bench of this folder made it" : reason));
+  }
+  out.collections.push_back(std::move(one));
   if (has_characterization)
     add_characterization(folder / "characterization/characterization.json", name, out);
   else if (runs.size() >= kLeastRuns)
@@ -65,6 +120,7 @@ void add_named(const std::string& name, ReportInputs& out) {
   if (!is_run && fs::exists(path / "characterization.json"))
     return add_characterization(path / "characterization.json", "", out);
   if (!is_run && fs::exists(path / "metrics.csv")) return add_bench(name, out);
+  if (!is_run && fs::exists(path / "sweep.json")) return add_sweep(name, out);
   if (is_run || !has_models) out.runs.push_back(name);
   if (has_models) add_models((path / "models.csv").string(), name, name, out);
 }
@@ -111,6 +167,7 @@ void add_suites(const ReportInputs& inputs, nlohmann::ordered_json& data) {
     }
     return out;
   };
+  data["collections"] = inputs.collections;
   data["characterizations"] = list(inputs.characterizations);
   data["models"] = list(inputs.models);
 }

@@ -1,0 +1,106 @@
+// Writes tables of points and of failures.
+// SPDX-License-Identifier: Apache-2.0
+#include "report/page/collection.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "report/page/parts.h"
+
+namespace glint::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kMainMetrics[] = {"cycles",       "thread_ipc", "simt_efficiency", "l1d_miss_rate",
+                                        "l2_miss_rate", "dram_util",  "rt_occupancy",    "rt_efficiency"};
+
+std::string text(const Json& one, const char* key) {
+  return escaped(one.at(key).get<std::string>());
+}
+
+const Json* run_of(const Json& data, const Json& point) {
+  for (const Json& run : data["runs"])
+    if (run["directory"] == point["directory"]) return &run;
+  return nullptr;
+}
+
+// Returns the value of a swept key in a run; "config" is the preset.
+Json value_of(const Json& run, const std::string& key) {
+  return key == "config" ? run["run"]["config"].value("name", Json()) : run["config"].value(key, Json());
+}
+
+std::string head_cell(const std::string& content, const std::string& title = "") {
+  return fmt::format("<th scope=\"col\" class=\"n\"{}>{}</th>",
+                     title.empty() ? "" : fmt::format(" title=\"{}\"", title), content);
+}
+
+std::string points_table(const Json& data, const Json& one) {
+  std::string head = "<th scope=\"col\">Point</th>", rows;
+  for (const Json& key : one["keys"])
+    head += head_cell("<code>" + escaped(key.get<std::string>()) + "</code>");
+  for (const char* name : kMainMetrics)
+    for (const Json& metric : data["metric_docs"])
+      if (metric["name"] == name)
+        head += head_cell(fmt::format("<code>{}</code>", name),
+                          fmt::format("{} ({})", text(metric, "doc"), text(metric, "unit")));
+  for (const Json& point : one["points"]) {
+    const Json* const run = run_of(data, point);
+    if (!run) continue;
+    rows += fmt::format("<tr><th scope=\"row\"><a href=\"{}\">{}</a></th>", text(point, "link"),
+                        text(point, "name"));
+    for (const Json& key : one["keys"])
+      rows += fmt::format("<td class=\"n\">{}</td>", shown(value_of(*run, key)));
+    for (const char* name : kMainMetrics)
+      rows += fmt::format("<td class=\"n\">{}</td>", shown((*run)["metrics"].value(name, Json())));
+    rows += "</tr>\n";
+  }
+  return fmt::format(
+      "<div class=\"scroll\"><table class=\"metrics\" "
+      "data-table=\"points\"><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+      head, rows);
+}
+
+std::string failed_table(const Json& one) {
+  std::string rows;
+  for (const Json& failed : one["failed"])
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"doc\">{}</td></tr>\n", text(failed, "name"),
+                        text(failed, "reason"));
+  return fmt::format(
+      "<div class=\"scroll\"><table class=\"metrics\" data-table=\"failed\"><thead><tr><th "
+      "scope=\"col\">Run</th><th scope=\"col\">Why it is not here</th></tr></thead><tbody>\n"
+      "{}</tbody></table></div>\n",
+      rows);
+}
+
+std::string section(const Json& data, const Json& one, size_t number) {
+  const bool is_sweep = one["kind"] == "sweep";
+  const size_t failed = one["failed"].size(), points = one["points"].size();
+  if (!is_sweep && failed == 0) return "";
+  std::string out =
+      fmt::format("<section id=\"{}{}\">\n<h2>{}</h2>\n", is_sweep ? "sweep" : "failed",
+                  number ? fmt::format("-{}", number + 1) : "", is_sweep ? "Sweep" : "Workloads that failed");
+  if (is_sweep)
+    out += fmt::format(
+               "<p class=\"lead\">{} of {} points of <code>{}</code> are complete. Each name leads to the "
+               "point's own report.</p>\n",
+               points, points + failed, text(one, "source")) +
+           points_table(data, one);
+  else
+    out += fmt::format(
+        "<p class=\"lead\"><code>{}</code> has {} not in its metrics.csv, and so not on this page.</p>\n",
+        text(one, "source"), failed == 1 ? "1 run that is" : fmt::format("{} runs that are", failed));
+  return out + (failed ? failed_table(one) : "") + "</section>\n";
+}
+
+}  // namespace
+
+std::string collection_sections(const Json& data) {
+  std::string out;
+  const Json list = data.value("collections", Json::array());
+  for (size_t i = 0; i < list.size(); ++i) out += section(data, list[i], i);
+  return out;
+}
+
+}  // namespace glint::report
