@@ -38,6 +38,12 @@ constexpr const char* kSsaRewrite = "--ssa-rewrite";
 // cannot have functions that need it, and reading them again for each part would cost time.
 constexpr uint64_t kLargeModule = 8192;
 
+// Choice: from this many instructions after inlining on, inserts into vectors and structs that nobody reads
+// stay. The pass that drops them takes more than a minute for a public path tracer of 100,000 instructions.
+// Lowering makes no instructions of them, because it knows the scalars of a value.
+constexpr const char* kDeadInserts = "--eliminate-dead-inserts";
+constexpr uint64_t kManyInserts = 32'768;
+
 // Some passes of -O are left out on purpose. Redundancy elimination merges loads of volatile built-ins across
 // reportIntersectionEXT, simplify-instructions contracts a*b+c to Fma, ccp folds sin and cos with the host's
 // libm, and if-conversion removes divergence that hardware has.
@@ -57,7 +63,7 @@ const std::vector<std::string>& pass_list() {
       "--private-to-local", "--eliminate-local-single-block", "--eliminate-local-single-store",
       "--eliminate-dead-code-aggressive", "--scalar-replacement=100", "--convert-local-access-chains",
       "--eliminate-local-single-block", "--eliminate-local-single-store", "--eliminate-dead-code-aggressive",
-      kSsaRewrite, "--eliminate-dead-code-aggressive", "--vector-dce", "--eliminate-dead-inserts",
+      kSsaRewrite, "--eliminate-dead-code-aggressive", "--vector-dce", kDeadInserts,
       "--eliminate-dead-branches", "--cfg-cleanup", "--merge-blocks", "--eliminate-dead-code-aggressive",
       "--eliminate-dead-const"};
   return kPasses;
@@ -198,9 +204,10 @@ constexpr uint64_t kMostMarkedCalls = 2000;
 
 // Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
 // names its calls.
-std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, std::vector<std::string> passes,
                                 const InlinedSize& size, Report* report) {
   const bool is_large = size.instructions > kLargeModule;
+  if (size.instructions > kManyInserts) std::erase(passes, kDeadInserts);
   // A block with few calls can become one with many, when the callees have calls in their turn.
   const uint32_t calls_of_block = size.calls <= kMostMarkedCalls ? 64 : 1;
   const std::vector<uint32_t> input =

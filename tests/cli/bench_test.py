@@ -193,6 +193,25 @@ class Bench(BenchTest):
         self.assertFalse((self.folder / "out/PARK_PT/workload.json").exists())
         self.assertEqual([pid for pid in children if os.path.exists(f"/proc/{pid}")], [])
 
+    def test_max_cycles_ends_long_launches_and_their_rows_are_marked_as_partial(self):
+        self.glint(0, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out")
+        cycles = {name: int(float(row["cycles"])) for name, row in self.metrics().items()}
+        short, long = sorted(cycles, key=cycles.get)
+        limit = str((cycles[short] + cycles[long]) // 2)
+        done = self.glint(6, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out", "--max-cycles", limit)
+        self.assertIn(f"--max-cycles has ended these launches, which metrics.csv does not have: {long}\n", done.stderr)
+        self.assertRegex(done.stdout, rf"{long} .* cycles .*  partial\n")
+        self.assertEqual({name: int(float(row["cycles"])) for name, row in self.metrics().items()}, {short: cycles[short]})
+        summary = (self.folder / "out/summary.txt").read_text()
+        self.assertIn(f"{long} (partial)", summary)
+        self.assertNotIn(f"{short} (partial)", summary)
+        facts = json.loads((self.folder / f"out/{long}/run.json").read_text())
+        self.assertEqual((facts["exit"], facts["partial"]["reason"]), (6, "max_cycles"))
+        again = self.glint(0, "bench", "SHIP_SH", "WKND_SH", *SMALL, "--out", "out", "--resume")
+        self.assertIn("1 of them complete", again.stdout)
+        self.assertEqual({name: int(float(row["cycles"])) for name, row in self.metrics().items()}, cycles)
+        self.assertIn("the functional machine has none", self.glint(2, "bench", "SHIP_SH", "--mode", "functional", "--max-cycles", "9").stderr)
+
     def test_names_that_are_none_are_refused_with_the_nearest(self):
         self.assertIn("did you mean 'SHIP_SH'?", self.glint(2, "bench", "SHIP_SK").stderr)
         self.assertIn("CHSNT_SH", self.glint(2, "bench", "CHSNT_SH").stderr)

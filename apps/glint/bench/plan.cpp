@@ -14,6 +14,7 @@
 #include "apps/glint/options/image_size.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/options/resources.h"
+#include "apps/glint/run/launch_options.h"
 #include "base/regular_file.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
@@ -93,6 +94,7 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
   for (const Plugin& plugin : session.plugins) out.push_back("--plugin=" + plugin.path);
   for (const std::string& option : frame_options(options.frame)) out.push_back(option);
   out.push_back("--stats=" + options.stats);
+  if (options.max_cycles > 0) out.push_back(fmt::format("--max-cycles={}", options.max_cycles));
   for (const std::string& option : observe_arguments(options.observe)) out.push_back(option);
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
@@ -103,6 +105,7 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
 
 BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   check_observation(options.observe, options.mode == "timing");
+  check_max_cycles(options.max_cycles, options.mode == "timing");
   BenchPlan plan;
   scenes::RenderParams frame = options.frame;
   parse_size(options.size, frame);

@@ -21,6 +21,7 @@ struct BenchOptions {
   uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors
   double memory = 0;                    // GB that all processes may take together; 0: what is available
   bool resume = false;
+  uint64_t max_cycles = 0;        // limit of each launch; 0: none
   std::string stats = "full";     // "full" or "compact"
   pipeline::Observation observe;  // what each run notes
 };

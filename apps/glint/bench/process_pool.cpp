@@ -17,6 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "apps/glint/run/recorded_run.h"
 #include "base/diagnostics.h"
 
 namespace glint::app {
@@ -191,7 +192,9 @@ void ProcessPool::end(size_t at, int status, uint64_t peak_bytes) {
   process.seconds = seconds_since(child.start);
   process.peak_bytes = peak_bytes;
   process.end = how_it_ended(status);
+  const bool is_partial = WIFEXITED(status) && WEXITSTATUS(status) == int(kReachedMaxCycles);
   process.state = process.end.empty() ? Process::State::Done
+                  : is_partial        ? Process::State::Partial
                   : interrupted_      ? Process::State::Stopped
                                       : Process::State::Failed;
   if (on_end) on_end(child.index);

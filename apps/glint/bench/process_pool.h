@@ -16,7 +16,8 @@ struct Process {
   uint64_t memory = 0;                 // bytes that it will need, estimated
   double weight = 1;                   // relative time that it will take; heavy processes start first
 
-  enum class State { Waiting, Running, Done, Failed, Stopped } state = State::Waiting;
+  // Partial says that --max-cycles has ended the run; its results are those up to then.
+  enum class State { Waiting, Running, Done, Partial, Failed, Stopped } state = State::Waiting;
   std::string phase = "starting";  // the last phase that the process told
   double progress = 0;             // progress of the phase, 0 to 1
   double seconds = 0;              // seconds since its start, or seconds that it took once it has ended

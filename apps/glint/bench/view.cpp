@@ -53,12 +53,13 @@ std::string figures_of(const report::RunRecord& run) {
 void BenchView::ended(const BenchTask& task, const Process& process, const std::string& figures) {
   clear();
   ++ended_;
-  const bool is_well = process.state == Process::State::Done;
+  const bool is_partial = process.state == Process::State::Partial,
+             is_well = process.state == Process::State::Done || is_partial;
   if (!is_well) ++failed_;
   const std::string head = fmt::format("{:>2}/{} {:<{}}", ended_, total_, task.workload.name(), kNameWidth);
   if (is_well)
-    print_output("{} {}  {:>11}  {}\n", head, figures, report::seconds(process.seconds),
-                 gigabytes(process.peak_bytes));
+    print_output("{} {}  {:>11}  {}{}\n", head, figures, report::seconds(process.seconds),
+                 gigabytes(process.peak_bytes), is_partial ? "  partial" : "");
   else
     print_output("{} {}\n", head, figures);
 }
@@ -95,11 +96,13 @@ std::string summary_table(const std::vector<BenchRow>& rows) {
       {"workload", "", "", "%", "%", "%", "%", "%", "", "a ray", "time", "memory"}};
   for (const BenchRow& row : rows) {
     const std::vector<report::MetricValue> m = report::metrics_of(row.run);
-    cells.push_back({row.task->workload.name(), whole(m, "cycles"), shown(m, "thread_ipc", 1),
-                     shown(m, "simt_efficiency", 1, 100), shown(m, "rt_occupancy", 1, 100),
-                     shown(m, "rt_efficiency", 1, 100), shown(m, "rt_miss_rate", 1, 100),
-                     shown(m, "dram_util", 1, 100), whole(m, "rays_total"), shown(m, "avg_nodes_per_ray", 1),
-                     report::seconds(row.process->seconds), gigabytes(row.process->peak_bytes)});
+    const bool is_partial = row.process->state == Process::State::Partial;
+    cells.push_back({row.task->workload.name() + (is_partial ? " (partial)" : ""), whole(m, "cycles"),
+                     shown(m, "thread_ipc", 1), shown(m, "simt_efficiency", 1, 100),
+                     shown(m, "rt_occupancy", 1, 100), shown(m, "rt_efficiency", 1, 100),
+                     shown(m, "rt_miss_rate", 1, 100), shown(m, "dram_util", 1, 100), whole(m, "rays_total"),
+                     shown(m, "avg_nodes_per_ray", 1), report::seconds(row.process->seconds),
+                     gigabytes(row.process->peak_bytes)});
   }
   return report::table(cells, "<>>>>>>>>>>>");
 }

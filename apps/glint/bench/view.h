@@ -38,7 +38,8 @@ class BenchView {
 // functional run has fewer.
 std::string figures_of(const report::RunRecord& run);
 
-// Holds a row of the table at the end, which has one for each workload with results.
+// Holds a row of the table at the end, which has one for each workload with results. Those of a launch that
+// --max-cycles has ended are marked as partial.
 struct BenchRow {
   const BenchTask* task;
   const Process* process;

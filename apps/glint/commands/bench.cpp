@@ -17,6 +17,7 @@
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/launch_options.h"
+#include "apps/glint/run/recorded_run.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
@@ -163,13 +164,16 @@ class Bench {
       mark_complete(task, plan_.key, process);
       write_metrics(directory);
     }
+    // A row of metrics.csv stands for a whole launch, so a partial one has none.
+    if (process.state == Process::State::Partial)
+      figures = figures_of(report::RunRecord::read(task.directory));
     view.ended(task, task.process, figures);
   }
 
   std::vector<BenchRow> rows() const {
     std::vector<BenchRow> out;
     for (const BenchTask& task : plan_.tasks)
-      if (task.process.state == Process::State::Done)
+      if (task.process.state == Process::State::Done || task.process.state == Process::State::Partial)
         out.push_back({&task, &task.process, report::RunRecord::read(task.directory)});
     return out;
   }
@@ -188,9 +192,10 @@ class Bench {
 
   Exit conclude(const report::RunDirectory& directory, bool whole) const {
     size_t done = 0, failed = 0;
-    std::string names;
+    std::string names, partial;
     for (const BenchTask& task : plan_.tasks) {
       done += task.process.state == Process::State::Done;
+      if (task.process.state == Process::State::Partial) partial += " " + task.workload.name();
       if (task.process.state != Process::State::Failed) continue;
       ++failed;
       names += " " + task.workload.name();
@@ -207,7 +212,14 @@ class Bench {
       fmt::print(
           stderr,
           "error: the bench was interrupted\n  note: the same command with --resume goes on from here\n");
-    return failed || !whole ? Exit::Failure : Exit::Ok;
+    if (!partial.empty())
+      fmt::print(
+          stderr,
+          "error: --max-cycles has ended these launches, which metrics.csv does not have:{}\n  note: the "
+          "directory of each holds what it did up to then\n",
+          partial);
+    if (failed || !whole) return Exit::Failure;
+    return partial.empty() ? Exit::Ok : kReachedMaxCycles;
   }
 
   const BenchOptions& options_;
@@ -265,6 +277,10 @@ void add_bench(Command app, Session& session) {
   add_frame_options(command, options->frame);
   add_observe_options(command, options->observe);
   add_stats_option(command, options->stats);
+  add_max_cycles_option(
+      command, options->max_cycles,
+      "Cycle at which each launch is ended early; its row of the summary is marked as partial, "
+      "metrics.csv does not have it, and the exit code is 6 (default: no limit)");
   command.callback([&session, options] {
     session.action = [&session, options] { return Bench(session, *options).run(); };
   });

@@ -27,13 +27,10 @@ void add_machine_options(Command command, LaunchOptions& options) {
       .add_option("--max-instructions", options.max_instructions,
                   "Number of instructions after which a warp is taken to be endless")
       .in_range(uint64_t{1}, kMostCount);
-  command
-      .add_option(
-          "--max-cycles", options.max_cycles,
-          "Cycle at which the launch is ended early; what it did up to then is kept, and the exit code "
-          "is 6 (default: no limit)")
-      .type_name("CYCLES")
-      .positive();
+  add_max_cycles_option(
+      command, options.max_cycles,
+      "Cycle at which the launch is ended early; what it did up to then is kept, and the exit "
+      "code is 6 (default: no limit)");
   command
       .add_option("--on-fault", options.on_fault_name,
                   "Selects what a fault does: stop ends the run at the first fault; with warn, wrong loads "
@@ -62,6 +59,10 @@ void add_stats_option(Command command, std::string& stats) {
       .capture_default_str();
 }
 
+void add_max_cycles_option(Command command, uint64_t& max_cycles, const std::string& help) {
+  command.add_option("--max-cycles", max_cycles, help).type_name("CYCLES").positive();
+}
+
 void add_launch_options(Command command, LaunchOptions& options) {
   add_machine_options(command, options);
   command
@@ -87,8 +88,8 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
 }
 
-void check_max_cycles(const LaunchOptions& options, bool timing) {
-  if (options.max_cycles && !timing)
+void check_max_cycles(uint64_t max_cycles, bool timing) {
+  if (max_cycles && !timing)
     throw UserError({}, "--max-cycles needs cycles, and the functional machine has none",
                     "--max-instructions bounds the instructions of a warp");
 }

@@ -40,9 +40,11 @@ void add_launch_options(Command command, LaunchOptions& options);
 void finish_launch_options(const Command& command, LaunchOptions& options);
 
 void add_stats_option(Command command, std::string& stats);  // adds --stats
+void add_max_cycles_option(Command command, uint64_t& max_cycles,
+                           const std::string& help);  // adds --max-cycles
 
 // Throws UserError when the functional machine is given a limit of cycles.
-void check_max_cycles(const LaunchOptions& options, bool timing);
+void check_max_cycles(uint64_t max_cycles, bool timing);
 
 // Returns the configuration with its overrides, of which max_instructions is one.
 pipeline::GpuParams gpu_of(const Resources& resources, const LaunchOptions& options);

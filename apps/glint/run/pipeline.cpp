@@ -146,7 +146,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   if (budget) job.gpu.core.instruction_budget = budget;
   job.timing = mode == "timing";
   check_observation(options.observe, job.timing);
-  check_max_cycles(options, job.timing);
+  check_max_cycles(options.max_cycles, job.timing);
   job.no_skip = options.no_skip;
   pipeline::PipelineWorld world(description, job.gpu);
   exec::PrintLog prints(options.print_limit);

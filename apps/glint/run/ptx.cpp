@@ -103,7 +103,7 @@ bool names_kernel(const std::string& what) {
 Exit run_ptx(const Session& session, const std::string& what, const std::string& launch_file,
              const LaunchOptions& options) {
   check_observation(options.observe, options.mode == "timing");
-  check_max_cycles(options, options.mode == "timing");
+  check_max_cycles(options.max_cycles, options.mode == "timing");
   const bool is_ptx = what.ends_with(".ptx");
   if (is_ptx && launch_file.empty())
     throw UserError(

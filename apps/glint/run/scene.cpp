@@ -63,7 +63,7 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
   job.on_fault = launch.on_fault;
   job.observe = launch.observe;
   check_observation(job.observe, job.timing);
-  check_max_cycles(launch, job.timing);
+  check_max_cycles(launch.max_cycles, job.timing);
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
