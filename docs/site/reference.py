@@ -91,7 +91,7 @@ def _values(markdown: str) -> dict[str, str]:
 
 # Lists the public names of the package by section. A name of __all__ that no section has ends the build.
 _PYTHON = {
-    "Runs": ("Run", "Facts", "labels"), "Statistics": ("Stats", "Stat", "Histogram"), "Metrics": ("metrics", "Metric", "Metrics"), "Tables": ("Table",),
+    "Runs": ("Run", "Facts", "labels"), "Statistics": ("Stats", "Stat", "Histogram"), "Metrics": ("metrics", "Metric", "Metrics"), "Tables": ("Table",), "Traces": ("Trace", "Slice"),
     "Folders of runs": ("Runs", "Bench", "Sweep"), "Comparison": ("compare", "Change", "speedup"), "Characterisation": ("Characterization",),
     "Starting runs": ("run", "sweep", "find_glint"), "Pictures": ("read_image",),
     "Errors": ("GlintError", "MissingFile", "IncompleteRun", "SchemaError", "UnknownName", "MissingPackage", "CommandFailed")}

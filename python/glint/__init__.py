@@ -23,9 +23,10 @@ from .derived import Metric, Metrics, metrics
 from .run_directory import Facts, Run
 from .statistics import Histogram, Stat, Stats
 from .table import Table
+from .trace import Slice, Trace
 
 __all__ = ["Bench", "Change", "Characterization", "CommandFailed", "Facts", "GlintError", "Histogram", "IncompleteRun", "Metric", "Metrics", "MissingFile", "MissingPackage",
-           "Run", "Runs", "SchemaError", "Stat", "Stats", "Sweep", "Table", "UnknownName", "compare", "find_glint", "labels",
+           "Run", "Runs", "SchemaError", "Slice", "Stat", "Stats", "Sweep", "Table", "Trace", "UnknownName", "compare", "find_glint", "labels",
            "metrics", "plot", "read_image", "run", "speedup", "sweep"]
 
 

@@ -17,6 +17,7 @@ from .derived import Metrics
 from .patterns import near
 from .statistics import Stats
 from .table import Table
+from .trace import Trace
 
 SCHEMA = 1  # of run.json, as report/files/run_directory.cpp writes it
 SHADERS = ("pt", "sh", "ao")  # shaders of scenes; pipelines and kernels list their own files
@@ -150,6 +151,11 @@ class Run:
         if not isinstance(ends, (int, float)) or ends < last:
             raise SchemaError(f"{path}: the series ends at cycle {ends} and the run at {last}: the file is damaged or was cut short")
         return table
+
+    @functools.cached_property
+    def trace(self) -> Trace:
+        """Returns what warps and RT units did cycle by cycle. The run needs `--trace`."""
+        return Trace(self.file("trace.json.gz", "--trace"))
 
     @functools.cached_property
     def profile(self) -> Table:

@@ -54,6 +54,13 @@ class Layout(PythonTest):
                 for (_, end), (begin, _) in zip(spans, spans[1:]):
                     self.assertLess(end, begin + 1.5, f"names of the {which} axis lie on each other")
 
+    def test_a_timeline_with_every_warp_slot_can_be_read(self):
+        run = self.glint.run("WKND_PT", out=self.folder / "traced", options=["--trace"], size=(128, 96), spp=1, glint=GLINT)
+        for by in ("state", "stage"):
+            figure = self.glint.plot.timeline(run, by=by)
+            self.assertGreater(len(figure.axes[0].get_yticks()), 16)
+            self.readable(figure)
+
     def test_every_figure_of_every_choice_of_runs_can_be_read(self):
         kinds = ("geometry", "stages", "cpi_stack", "rt_use", "l1_reads", "ray_nodes", "ipc")  # one figure of each kind
         for choice, some in (("sweep", self.glint.plot.FIGURES), ("mixed", kinds), ("sizes", kinds), ("suite", kinds), ("ship", kinds)):

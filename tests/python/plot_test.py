@@ -73,6 +73,54 @@ class Figures(PythonTest):
         self.assertEqual((figure.axes[0].images[0].get_clim(), figure.axes[1].get_ylabel()), ((0, 252), "nodes (node)"))
         self.assertRaisesRegex(self.glint.MissingFile, "no map 'rays'; the run has: nodes", self.glint.plot.cost_map, self.wknd, "rays")
 
+    def bars(self, figure):
+        """Returns the length of all bars of a timeline by row, from the top."""
+        lengths = [0.0] * len(figure.axes[0].get_yticks())
+        for collection in figure.axes[0].collections:
+            for path in collection.get_paths():
+                box = path.get_extents()
+                lengths[round((box.y0 + box.y1) / 2)] += box.width
+        return lengths
+
+    def test_a_timeline_has_the_cycles_of_the_warps_and_of_the_rays(self):
+        plot = self.glint.plot
+        run = self.glint.run("WKND_PT", out=self.folder / "traced", options=["--trace"], size=(32, 32), spp=1, glint=python_case.GLINT)
+        trace, whole = run.trace, (run.trace.begin, run.trace.end)
+        for sm in (0, 1):
+            for by in ("state", "stage"):
+                figure = plot.timeline(run, sm=sm, window=whole, by=by)
+                names = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+                lengths = dict(zip(names, self.bars(figure)))
+                self.assertAlmostEqual(sum(n for name, n in lengths.items() if name.startswith("warp")), run.stats[f"gpu.core[{sm}].resident_cycles"])
+                self.assertAlmostEqual(sum(n for name, n in lengths.items() if name.startswith("RT")), run.stats[f"gpu.rt_unit[{sm}].rt.warp_latency_sum"])
+        part = plot.timeline(run, window=(6000, 7000))
+        self.assertEqual(part.axes[0].get_xlim(), (6000, 7000))
+        self.assertLessEqual(max(self.bars(part)), 1000)
+        for suffix in ("pdf", "svg", "png"):
+            first, second = (plot.save(plot.timeline(run), self.folder / f"t{i}.{suffix}").read_bytes() for i in (1, 2))
+            self.assertEqual(first, second, suffix)
+        self.assertRaisesRegex(self.glint.GlintError, f"the SMs 0 to {trace.sms - 1}", plot.timeline, run, sm=trace.sms)
+        self.assertRaisesRegex(self.glint.GlintError, "did nothing from cycle", plot.timeline, run, window=(10**9, 10**9 + 1))
+        self.assertRaisesRegex(self.glint.GlintError, "'state' or 'stage'", plot.timeline, run, by="warp")
+        self.assertRaisesRegex(self.glint.GlintError, "--trace", plot.timeline, self.ship)
+        damaged = self.folder / "damaged.json.gz"
+        for content in (b"no gzip", trace.path.read_bytes()[:2000]):
+            damaged.write_bytes(content)
+            self.assertRaisesRegex(self.glint.SchemaError, "not a trace", self.glint.Trace, damaged)
+
+    def test_figures_take_the_path_of_a_run_or_of_a_folder_of_runs(self):
+        plot = self.glint.plot
+        sweep = self.glint.sweep("WKND_SH", {"rt.warps": [1, 4]}, out=self.folder / "points", size=(8, 8), spp=1, glint=python_case.GLINT)
+        self.assertEqual(len(self.widths(plot.cpi_stack(sweep.directory))), 2)
+        self.assertEqual(self.widths(plot.cpi_stack(str(self.ship.directory))), self.widths(plot.cpi_stack(self.ship)))
+        self.command("bench", "WKND_PT", "WKND_AO", "--size", "8x8", "--spp", "1", "--out", self.folder / "bench")
+        self.assertEqual(len(self.widths(plot.cpi_stack(self.folder / "bench"))), 2)
+        self.assertRaisesRegex(self.glint.MissingFile, "nowhere", plot.cpi_stack, "nowhere")
+        (self.folder / "bench/models.csv").write_text("workload,cycles,model:a\nWKND_PT,100,90\nWKND_AO,50,60\n")
+        bench = self.glint.Bench(self.folder / "bench")
+        self.assertEqual(len(plot.model_fit(bench).axes[0].collections[0].get_offsets()), 2)
+        self.assertRaisesRegex(self.glint.MissingFile, "glint characterize", plot.scree, bench)
+
     def test_what_cannot_be_drawn_is_refused_with_a_reason(self):
         plot, Error = self.glint.plot, self.glint.GlintError
         self.assertRaisesRegex(Error, "at least one run", plot.dram, [])

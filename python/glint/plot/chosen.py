@@ -3,20 +3,32 @@
 """These functions serve all figures of runs."""
 from __future__ import annotations
 
+import pathlib
 from collections.abc import Mapping
 from typing import Any, Iterable, Sequence
 
+from ..collection import Bench, Sweep
 from ..errors import GlintError, SchemaError
 from ..labelling import labels
 from ..run_directory import Run
 from .kinds import Part, grouped, histogram, spread
 from .style import RUN_COLOURS, run_colour
 
-Chosen = Run | Iterable[Run] | Mapping[str, Run]
+Chosen = Run | Iterable[Run] | Mapping[str, Run] | str | pathlib.Path
+
+
+def opened(path: str | pathlib.Path) -> Run | Bench | Sweep:
+    """Returns what a folder holds: a run, the points of a sweep, or the runs of a bench."""
+    folder = pathlib.Path(path)
+    if (folder / "sweep.json").is_file():
+        return Sweep(folder)
+    return Run(folder) if (folder / "run.json").is_file() or not (folder / "metrics.csv").is_file() else Bench(folder)
 
 
 def chosen(runs: Chosen) -> list[Run]:
     """Returns a list of the runs. Raises GlintError when it is empty or has a functional run, which has no cycles."""
+    if isinstance(runs, (str, pathlib.Path)):
+        runs = opened(runs)
     found = [runs] if isinstance(runs, Run) else list(runs.values()) if isinstance(runs, Mapping) else list(runs)
     if not found:
         raise GlintError("a figure needs at least one run")

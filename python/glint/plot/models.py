@@ -7,10 +7,13 @@ import math
 import pathlib
 from typing import Any
 
+from ..collection import Bench
 from ..errors import MissingFile, SchemaError
 from ..table import Table
 from .kinds import Part, ranked
 from .style import COLOURS, RUN_COLOURS, legend, new_figure, run_colour, styled
+
+Models = Table | Bench | str | pathlib.Path
 
 _PREFIX = "model:"
 _MARKS = "osD^v"
@@ -25,10 +28,10 @@ def correlation(predicted: list[float], simulated: list[float]) -> float:
     return both * both / spread if spread else 0.0
 
 
-def _read(table: Table | str | pathlib.Path) -> tuple[Table, list[str]]:
+def _read(table: Models) -> tuple[Table, list[str]]:
     """Returns the table and its columns of models. It checks that all rows have positive cycles."""
     if not isinstance(table, Table):
-        path = pathlib.Path(table)
+        path = pathlib.Path(table.directory if isinstance(table, Bench) else table)
         path = path / "models.csv" if path.is_dir() else path
         if not path.is_file():
             raise MissingFile(f"{path}: there is no such table of models")
@@ -42,8 +45,8 @@ def _read(table: Table | str | pathlib.Path) -> tuple[Table, list[str]]:
     return table, models
 
 
-def model_fit(table: Table | str | pathlib.Path) -> Any:
-    """Draws predicted against simulated cycles with each model's R squared; on the line both are equal. It takes a table, `models.csv`, or its folder."""
+def model_fit(table: Models) -> Any:
+    """Draws predicted against simulated cycles with each model's R squared; on the line both are equal. It takes a table, `models.csv`, its folder, or a `Bench` on which `glint model` was run."""
     table, models = _read(table)
     cycles = table["cycles"]
     with styled():
@@ -63,7 +66,7 @@ def model_fit(table: Table | str | pathlib.Path) -> Any:
         return figure
 
 
-def model_errors(table: Table | str | pathlib.Path) -> Any:
+def model_errors(table: Models) -> Any:
     """Draws how far each model's cycles are from the simulated ones, workload by workload. It takes the same argument as `model_fit`."""
     table, models = _read(table)
     if len(models) > len(RUN_COLOURS):

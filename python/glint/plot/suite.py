@@ -1,6 +1,6 @@
 # Draws a whole suite: components, clusters and Kiviat plots, from what `glint characterize` wrote.
 # SPDX-License-Identifier: Apache-2.0
-"""Each function takes a `Characterization` or its folder (docs/characterization.md)."""
+"""Each function takes a `Characterization`, its folder (docs/characterization.md), or a `Bench` that was characterised."""
 from __future__ import annotations
 
 import math
@@ -8,15 +8,16 @@ import pathlib
 from typing import Any
 
 from ..characterization import Characterization
+from ..collection import Bench
 from ..errors import GlintError, UnknownName
 from ..patterns import near
 from .style import COLOURS, COLUMN, legend, new_figure, run_colour, styled
 
-Suite = Characterization | str | pathlib.Path
+Suite = Characterization | Bench | str | pathlib.Path
 
 
 def _suite(suite: Suite) -> Characterization:
-    return suite if isinstance(suite, Characterization) else Characterization(suite)
+    return suite if isinstance(suite, Characterization) else Characterization(suite.directory if isinstance(suite, Bench) else suite)
 
 
 def scree(suite: Suite) -> Any:
