@@ -136,7 +136,7 @@ bool Barriers::fail_stuck(const Block& block) {
   const bool ended = uint32_t(std::popcount(block.live())) < block.num_warps();
   what += ended ? "the others have ended" : "no other is left";
   return faults_.fail({std::move(what), world_.image->place_of(first->barrier_pc),
-                       launch_id(world_, first->warp_index, 0), true});
+                       shader_launch_id(world_, first->warp_index, 0), true});
 }
 
 }  // namespace glint::exec

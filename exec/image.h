@@ -109,6 +109,9 @@ struct World {
   std::vector<uint32_t> callable;
   BindingTable table;
   std::array<uint32_t, 3> launch_size{1, 1, 1};  // number of threads
+  // A launch without blocks may be a window of a larger one: what shaders read as their id begins at
+  // `first_id`, and they read `whole_size` as the launch's size. With zeros the launch is whole.
+  std::array<uint32_t, 3> first_id{0, 0, 0}, whole_size{0, 0, 0};
   // These are the threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in
   // each direction. With zeros the launch has no blocks, and each warp is a block of its own (ray
   // generation); `layout` says which threads it has.

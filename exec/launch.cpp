@@ -75,16 +75,17 @@ void fill_launch_specials(const World& world, WarpContext& warp, const Seat& sea
       blocks ? world.block_size : std::array<uint32_t, 3>{uint32_t(kLanes), 1, 1};
   const std::array<uint32_t, 3> grid =
       blocks ? grid_size(world) : std::array<uint32_t, 3>{num_blocks(world), 1, 1};
+  const std::array<uint32_t, 3>& whole = world.whole_size[0] ? world.whole_size : world.launch_size;
   const auto set = [&](Special s, size_t lane, uint32_t value) {
     warp.regs.bank[2][size_t(s) * kLanes + lane] = value;
   };
   const auto axis_of = [](Special x, size_t axis) { return Special(size_t(x) + axis); };
   for (size_t lane = 0; lane < size_t(kLanes); ++lane) {
-    const auto id = launch_id(world, warp.warp_index, int(lane));
+    const auto id = shader_launch_id(world, warp.warp_index, int(lane));
     const auto thread = coordinates((blocks ? uint64_t(warp.warp_in_block) * kLanes : 0) + lane, size);
     for (size_t axis = 0; axis < 3; ++axis) {
       set(axis_of(Special::LaunchX, axis), lane, id[axis]);
-      set(axis_of(Special::LaunchSizeX, axis), lane, world.launch_size[axis]);
+      set(axis_of(Special::LaunchSizeX, axis), lane, whole[axis]);
       set(axis_of(Special::TidX, axis), lane, thread[axis]);
       set(axis_of(Special::NtidX, axis), lane, size[axis]);
       set(axis_of(Special::CtaidX, axis), lane, warp.block->id()[axis]);
@@ -128,6 +129,12 @@ std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int l
   const std::array<uint32_t, 3> block = block_id(world, warp_index / warps);
   std::array<uint32_t, 3> id = coordinates(thread, world.block_size);
   for (size_t axis = 0; axis < 3; ++axis) id[axis] += block[axis] * world.block_size[axis];
+  return id;
+}
+
+std::array<uint32_t, 3> shader_launch_id(const World& world, uint32_t warp_index, int lane) {
+  std::array<uint32_t, 3> id = launch_id(world, warp_index, lane);
+  for (size_t axis = 0; axis < 3; ++axis) id[axis] += world.first_id[axis];
   return id;
 }
 

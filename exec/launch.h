@@ -21,6 +21,8 @@ uint32_t warps_per_block(const World& world);  // 1 in a launch without blocks
 // Returns the launch coordinates of a lane of a warp, as World::layout gives them. In a launch with blocks, x
 // runs fastest within the block. A lane without a thread is outside of the launch.
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
+// Returns the same as the shader reads it, which differs where the launch is a window of a larger one.
+std::array<uint32_t, 3> shader_launch_id(const World& world, uint32_t warp_index, int lane);
 
 // Empties `block` for block `index` of the launch: shared memory is zeroed, and no warp has arrived anywhere.
 // Blocks are numbered x fastest, unless the layout says otherwise.

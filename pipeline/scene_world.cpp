@@ -77,6 +77,8 @@ SceneWorld::SceneWorld(const RenderJob& job) {
   world.any_hit = job.gpu.rt.any_hit.make({});
   world.layout = job.gpu.core.layout.make({});
   world.launch_size = {job.frame.width, job.frame.height, 1};
+  world.first_id = {job.frame.crop_x, job.frame.crop_y, 0};
+  world.whole_size = {job.frame.whole_width(), job.frame.whole_height(), 1};
   link_shaders(job);
   upload_geometry(job.scene);
   upload_images(job);
@@ -142,10 +144,10 @@ void SceneWorld::upload_images(const RenderJob& job) {
     return uint64_t(world.images.size() - 1);
   };
   using Format = exec::ImageView::Format;
+  const uint32_t whole_width = job.frame.whole_width(), whole_height = job.frame.whole_height();
   bind(kAccumulationImage,
-       add("binding 1 (accumulation)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
-  bind(kPictureImage,
-       add("binding 2 (picture)", Format::Rgba32Float, job.frame.width, job.frame.height, nullptr), 1);
+       add("binding 1 (accumulation)", Format::Rgba32Float, whole_width, whole_height, nullptr), 1);
+  bind(kPictureImage, add("binding 2 (picture)", Format::Rgba32Float, whole_width, whole_height, nullptr), 1);
   // A scene without textures binds one white texel, as the original application does.
   static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
   const uint64_t first = world.images.size();
@@ -207,7 +209,13 @@ std::vector<float> SceneWorld::read_image(uint32_t handle) const {
   const exec::ImageView& image = world.images[handle];
   GLINT_CHECK(image.format == exec::ImageView::Format::Rgba32Float, "image {} is not float", image.name);
   const auto texels = memory_.view<float>(image.base, uint64_t(image.width) * image.height * 4);
-  return {texels.begin(), texels.end()};
+  std::vector<float> out;
+  for (uint64_t y = 0; y < world.launch_size[1]; ++y) {
+    const uint64_t first = ((world.first_id[1] + y) * image.width + world.first_id[0]) * 4;
+    out.insert(out.end(), texels.begin() + first,
+               texels.begin() + first + uint64_t{world.launch_size[0]} * 4);
+  }
+  return out;
 }
 
 }  // namespace glint::pipeline

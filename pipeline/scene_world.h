@@ -32,7 +32,7 @@ class SceneWorld {
   std::vector<std::string> warnings;  // warnings of the compiler
   StructureCounts structures;
   mem::AddressSpace& memory() { return memory_; }
-  std::vector<float> read_image(uint32_t handle) const;       // returns 4 floats per texel
+  std::vector<float> read_image(uint32_t handle) const;       // 4 floats per texel of the launch
   static constexpr uint32_t kAccumulation = 0, kPicture = 1;  // image handles
 
  private:

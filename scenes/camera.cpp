@@ -52,7 +52,7 @@ CameraMatrices camera_matrices(const Camera& camera, float aspect) {
 FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const RenderParams& params) {
   FrameUniforms u{};
   const Camera& camera = scene.camera;
-  u.matrices = camera_matrices(camera, float(params.width) / float(params.height));
+  u.matrices = camera_matrices(camera, float(params.whole_width()) / float(params.whole_height()));
   u.light_position = camera.light_position;
   u.light_radius = camera.light_radius;
   u.aperture = camera.aperture;
@@ -72,8 +72,8 @@ FrameUniforms frame_uniforms(const Scene& scene, Workload workload, const Render
       break;
   }
   u.random_seed = params.seed;
-  u.width = params.width;
-  u.height = params.height;
+  u.width = params.whole_width();
+  u.height = params.whole_height();
   u.has_sky = camera.has_sky;
   return u;
 }

@@ -6,7 +6,8 @@ namespace glint::scenes {
 
 std::vector<std::pair<std::string, uint64_t>> values_of(const RenderParams& params) {
   std::vector<std::pair<std::string, uint64_t>> out;
-  for (const RenderParam& p : RenderParams::params()) out.emplace_back(p.key, params.*p.field);
+  for (const RenderParam& p : RenderParams::params())
+    if (!p.is_optional || params.*p.field != 0) out.emplace_back(p.key, params.*p.field);
   return out;
 }
 

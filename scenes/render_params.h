@@ -16,7 +16,12 @@ struct RenderParam;
 
 // Holds the parameters of one frame. The default counts of rays are LumiBench's benchmark values.
 struct RenderParams {
-  uint32_t width = 128, height = 128;
+  uint32_t width = 128, height = 128;  // of the picture
+  // A picture may be a window of a larger frame, with the pixels that the frame has there. It begins at
+  // (crop_x, crop_y) from the top left. With zeros the picture is the frame.
+  uint32_t crop_x = 0, crop_y = 0, frame_width = 0, frame_height = 0;
+  uint32_t whole_width() const { return frame_width ? frame_width : width; }
+  uint32_t whole_height() const { return frame_height ? frame_height : height; }
   uint32_t samples = 2;
   uint32_t seed = 1;
   uint32_t bounces = 16;
@@ -25,7 +30,7 @@ struct RenderParams {
 
   // Lists every parameter in the order of run.json. The command line, run.json, the resume keys of suites and
   // the models' repeated runs all follow this list.
-  static constexpr std::array<RenderParam, 7> params();
+  static constexpr std::array<RenderParam, 11> params();
 };
 
 // Describes one parameter of a frame.
@@ -35,24 +40,31 @@ struct RenderParam {
   std::string_view option;  // option of `glint run`; empty when the option --size gives the parameter
   std::string_view unit, doc;
   uint32_t min, max;
+  bool is_optional = false;  // left out of run.json where the value is 0, and 0 where run.json lacks it
 };
 
-constexpr std::array<RenderParam, 7> RenderParams::params() {
+constexpr std::array<RenderParam, 11> RenderParams::params() {
   constexpr uint32_t kAny = ~0u;
   using P = RenderParams;
-  return {{{&P::width, "width", "", "pixel", "Width of the image.", 1, kMaxSide},
-           {&P::height, "height", "", "pixel", "Height of the image.", 1, kMaxSide},
-           {&P::samples, "samples", "--spp", "sample", "Samples per pixel.", 1, 65536},
-           {&P::seed, "seed", "--seed", "", "Seed of the pixel jitter.", 0, kAny},
-           {&P::bounces, "rays.bounces", "--bounces", "ray", "Number of rays of the longest path in pt.", 1,
-            1000},
-           {&P::shadow_rays, "rays.shadow_rays", "--shadow-rays", "ray",
-            "Number of shadow rays per hit in sh.", 1, 4096},
-           {&P::ao_rays, "rays.ao_rays", "--ao-rays", "ray", "Number of occlusion rays per hit in ao.", 1,
-            4096}}};
+  return {
+      {{&P::width, "width", "", "pixel", "Width of the image.", 1, kMaxSide},
+       {&P::height, "height", "", "pixel", "Height of the image.", 1, kMaxSide},
+       {&P::samples, "samples", "--spp", "sample", "Samples per pixel.", 1, 65536},
+       {&P::seed, "seed", "--seed", "", "Seed of the pixel jitter.", 0, kAny},
+       {&P::bounces, "rays.bounces", "--bounces", "ray", "Number of rays of the longest path in pt.", 1,
+        1000},
+       {&P::shadow_rays, "rays.shadow_rays", "--shadow-rays", "ray", "Number of shadow rays per hit in sh.",
+        1, 4096},
+       {&P::ao_rays, "rays.ao_rays", "--ao-rays", "ray", "Number of occlusion rays per hit in ao.", 1, 4096},
+       {&P::crop_x, "crop.x", "", "pixel", "First column of the window.", 0, kMaxSide, true},
+       {&P::crop_y, "crop.y", "", "pixel", "First row of the window.", 0, kMaxSide, true},
+       {&P::frame_width, "crop.frame_width", "", "pixel", "Width of the frame that has the window.", 0,
+        kMaxSide, true},
+       {&P::frame_height, "crop.frame_height", "", "pixel", "Height of the frame that has the window.", 0,
+        kMaxSide, true}}};
 }
 
-// Returns the key and the value of every parameter, in the order of declaration.
+// Returns the key and the value of every parameter that run.json has, in the order of declaration.
 std::vector<std::pair<std::string, uint64_t>> values_of(const RenderParams& params);
 
 }  // namespace glint::scenes

@@ -12,6 +12,7 @@ from .run_directory import Run
 BETWEEN = " · "  # separates the words of a label
 _KEYS = 2  # keys shown if runs differ in more; more are shown only if fewer would not tell runs apart
 _RAYS = {"rays.bounces": "bounces", "rays.shadow_rays": "shadow rays", "rays.ao_rays": "AO rays", "seed": "seed"}
+_CROP = ("crop.x", "crop.y", "crop.frame_width", "crop.frame_height")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,13 +61,14 @@ def _differ(runs: Sequence[Run], of: Callable[[Run], Hashable]) -> bool:
 
 def _work(run: Run) -> tuple[Any, ...]:
     """Returns the facts that tell the work of two runs apart, whatever it ran on."""
-    return tuple(str(run.info.get(name)) for name in ("scene.name", "scene.form", "scene.hash", "shader", "width", "height", "samples", *_RAYS))
+    return tuple(str(run.info.get(name)) for name in ("scene.name", "scene.form", "scene.hash", "shader", "width", "height", *_CROP, "samples", *_RAYS))
 
 
 def _facts(runs: Sequence[Run]) -> list[list[str]]:
     """Returns for each run size, samples and similar facts where runs differ in them, and the shader where the workload does not name it."""
     texts: list[Callable[[Run], str]] = [
         lambda run: f"{run.info['width']}x{run.info['height']}" if run.info.get("width") else "",
+        lambda run: "at {},{} of {}x{}".format(*(run.info.get(name, 0) for name in _CROP)) if run.info.get("crop.frame_width") else "",
         lambda run: f"{run.info['samples']} spp" if run.info.get("samples") else ""]
     for name, word in _RAYS.items():
         texts.append(lambda run, name=name, word=word: f"{word} {run.info[name]}" if name in run.info else "")  # type: ignore[misc]

@@ -211,6 +211,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   for (const auto& [name, value] : info.memory_peaks) json["memory_peaks"][name] = value;
   json["mode"] = info.mode;
   for (const auto& [key, value] : info.frame) json[pointer_of(key)] = value;
+  for (const auto& [key, value] : info.overrides) json["overrides"][key] = value;
   if (const auto& s = info.structures)
     json["structures"] = {{"bytes", s->bytes},
                           {"triangles", s->triangles},

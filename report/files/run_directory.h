@@ -56,10 +56,11 @@ struct RunInfo {
   // launch without a frame has only these four.
   std::vector<std::pair<std::string, uint64_t>> frame = {
       {"width", 0}, {"height", 0}, {"samples", 0}, {"seed", 0}};
-  std::optional<StructureInfo> structures;                   // set once they are built
-  std::optional<ResidencyInfo> residency;                    // set for a timing run
-  std::vector<std::pair<std::string, double>> memory_peaks;  // the best that the memory system could do
-  std::string started;                                       // ISO 8601, UTC
+  std::vector<std::pair<std::string, std::string>> overrides;  // what the command line changed of the scene
+  std::optional<StructureInfo> structures;                     // set once they are built
+  std::optional<ResidencyInfo> residency;                      // set for a timing run
+  std::vector<std::pair<std::string, double>> memory_peaks;    // the best that the memory system could do
+  std::string started;                                         // ISO 8601, UTC
   double wall_seconds = 0;
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;

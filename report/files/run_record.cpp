@@ -144,6 +144,14 @@ std::string RunRecord::text(const std::string& name) const {
   return found == texts_.end() ? "" : found->second;
 }
 
+std::vector<std::pair<std::string, std::string>> RunRecord::texts_in(const std::string& table) const {
+  std::vector<std::pair<std::string, std::string>> out;
+  const std::string prefix = table + ".";
+  for (auto it = texts_.lower_bound(prefix); it != texts_.end() && it->first.starts_with(prefix); ++it)
+    out.emplace_back(it->first.substr(prefix.size()), it->second);
+  return out;
+}
+
 std::optional<double> RunRecord::find(const std::map<std::string, double>& map, const std::string& name) {
   const auto found = map.find(name);
   return found == map.end() ? std::nullopt : std::optional(found->second);

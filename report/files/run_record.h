@@ -36,6 +36,8 @@ class RunRecord {
   std::optional<double> config(const std::string& key) const { return find(config_, key); }
   // Returns a string of run.json, or "" when it has none.
   std::string text(const std::string& name) const;
+  // Returns the strings of a table of run.json, sorted by their keys: those of "overrides".
+  std::vector<std::pair<std::string, std::string>> texts_in(const std::string& table) const;
 
  private:
   static std::optional<double> find(const std::map<std::string, double>& map, const std::string& name);

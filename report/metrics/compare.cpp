@@ -7,6 +7,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -69,14 +71,30 @@ std::string uncompared_text(const RunRecord& before, const RunRecord& after) {
 }
 
 std::string different_work(const RunRecord& before, const RunRecord& after) {
-  constexpr std::string_view kFacts[] = {"scene.name", "scene.hash",       "shader",      "width",
-                                         "height",     "samples",          "seed",        "rays.bounces",
-                                         "mode",       "rays.shadow_rays", "rays.ao_rays"};
+  std::set<std::string> overrides;
+  for (const RunRecord* run : {&before, &after})
+    for (const auto& [key, value] : run->texts_in("overrides")) overrides.insert("overrides." + key);
+  std::vector<std::string> facts = {"scene.name",
+                                    "scene.hash",
+                                    "shader",
+                                    "width",
+                                    "height",
+                                    "crop.x",
+                                    "crop.y",
+                                    "crop.frame_width",
+                                    "crop.frame_height",
+                                    "samples",
+                                    "seed",
+                                    "rays.bounces",
+                                    "mode",
+                                    "rays.shadow_rays",
+                                    "rays.ao_rays"};
+  facts.insert(facts.end(), overrides.begin(), overrides.end());
   std::string out;
-  for (const std::string_view fact : kFacts) {
+  for (const std::string& fact : facts) {
     const auto value = [&](const RunRecord& run) {
-      const std::optional<double> number = run.fact(std::string(fact));
-      const std::string text = number ? fmt::format("{}", *number) : run.text(std::string(fact));
+      const std::optional<double> number = run.fact(fact);
+      const std::string text = number ? fmt::format("{}", *number) : run.text(fact);
       return text.empty() ? "nothing" : text;
     };
     if (const std::string was = value(before), is = value(after); was != is)

@@ -21,6 +21,10 @@ if(TARGET glint)
     add_test(NAME cli_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/messages_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  foreach(suite Crop Camera)
+    add_test(NAME cli_${suite}
+      COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/camera_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
   foreach(suite Endless Early)
     add_test(NAME cli_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/endless_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})

@@ -56,7 +56,8 @@ std::string key_of(const Session& session, const BenchOptions& options) {
   const std::string text = fmt::format(
       "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{} "
       "stats {}",
-      report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode, options.size,
+      report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode,
+      options.crop.empty() ? options.size : options.size + " crop " + options.crop,
       fmt::join(frame_options(options.frame), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
       report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
@@ -91,6 +92,7 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
                                   "--mode=" + options.mode,
                                   fmt::format("--threads={}", options.threads),
                                   "--out=" + task.directory};
+  if (!options.crop.empty()) out.push_back("--crop=" + options.crop);
   for (const Plugin& plugin : session.plugins) out.push_back("--plugin=" + plugin.path);
   for (const std::string& option : frame_options(options.frame)) out.push_back(option);
   out.push_back("--stats=" + options.stats);
@@ -109,6 +111,7 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   BenchPlan plan;
   scenes::RenderParams frame = options.frame;
   parse_size(options.size, frame);
+  parse_crop(options.crop, frame);
   const std::vector<std::string> names =
       options.names.empty() ? std::vector<std::string>{"lumibench"} : options.names;
   const std::vector<NamedWorkload> workloads = select_workloads(names);

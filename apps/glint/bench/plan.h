@@ -15,7 +15,7 @@ namespace glint::app {
 
 struct BenchOptions {
   std::vector<std::string> names;  // names for select_workloads(); none: lumibench
-  std::string config = "mobile", size = "128x128", mode = "timing", assets, out;
+  std::string config = "mobile", size = "128x128", crop, mode = "timing", assets, out;
   std::vector<std::string> settings;
   scenes::RenderParams frame;
   uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors

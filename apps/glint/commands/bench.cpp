@@ -274,6 +274,7 @@ void add_bench(Command app, Session& session) {
       .in_range(0u, 256u)
       .capture_default_str();
   command.add_option("--size", options->size, "Image size in pixels").type_name("WxH").capture_default_str();
+  add_crop_option(command, options->crop);
   add_frame_options(command, options->frame);
   add_observe_options(command, options->observe);
   add_stats_option(command, options->stats);

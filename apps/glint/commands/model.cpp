@@ -20,6 +20,7 @@
 #include "report/analytical/model_table.h"
 #include "report/files/run_directory.h"
 #include "report/terminal/progress.h"
+#include "scenes/overrides.h"
 
 namespace glint::app {
 namespace {
@@ -48,9 +49,11 @@ pipeline::RenderJob job_of(const Session& session, const ModelOptions& options, 
   job.gpu = read_config(session.resources, directory + "/config.toml", {});
   job.workload = workload.workload;
   for (const scenes::RenderParam& p : scenes::RenderParams::params())
-    job.frame.*p.field = uint32_t(fact(run, directory, std::string(p.key)));
+    job.frame.*p.field = uint32_t(p.is_optional ? run.fact(std::string(p.key)).value_or(0)
+                                                : fact(run, directory, std::string(p.key)));
   job.shader_dir = session.resources.shader_dir(std::string(workload.folder));
   job.scene = scenes::load_scene(run.text("scene.name"), {options.assets, false, {}});
+  scenes::override_scene(job.scene, run.texts_in("overrides"));
   if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))
     throw UserError(
         {directory + "/run.json"},

@@ -24,8 +24,18 @@ struct RunOptions {
   bool strict = false;            // for Amber scripts
 };
 
+// Refuses options that only scenes understand.
+void check_scene_options(const RunOptions& options) {
+  const std::string &what = options.scene.scene, option = options.scene.given();
+  if (option.empty() || (!names_script(what) && !names_pipeline(what) && !names_kernel(what))) return;
+  throw UserError({}, fmt::format("{} belongs to scenes, and '{}' is none", option, what),
+                  option == "--exr" ? "a pipeline keeps a picture with save = \"NAME.exr\" under [[image]]"
+                                    : "what a pipeline, a kernel or a script renders stands in its file");
+}
+
 Exit run(const Session& session, const RunOptions& options) {
   const std::string& what = options.scene.scene;
+  check_scene_options(options);
   if (names_script(what)) {
     if (observes(options.launch.observe))
       throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with Amber scripts",
@@ -43,12 +53,20 @@ Exit run(const Session& session, const RunOptions& options) {
   if (!options.more.empty())
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
                     "only Amber scripts can be run several at a time");
-  if (options.scene.exr && (names_pipeline(what) || names_kernel(what)))
-    throw UserError({}, "--exr belongs to scenes",
-                    "a pipeline keeps a picture with save = \"NAME.exr\" under [[image]]");
   if (names_pipeline(what)) return run_pipeline(session, what, options.launch);
   if (names_kernel(what)) return run_ptx(session, what, options.kernel_launch, options.launch);
   return run_scene(session, options.scene, options.launch);
+}
+
+void add_camera_options(Command command, SceneOptions& scene) {
+  command.add_option("--eye", scene.eye, "Place of the camera in world units, instead of the scene's")
+      .type_name("X,Y,Z");
+  command.add_option("--look-at", scene.look_at, "Place in the middle of the picture, instead of the scene's")
+      .type_name("X,Y,Z");
+  command.add_option("--up", scene.up, "Direction that is upwards in the picture, instead of the scene's")
+      .type_name("X,Y,Z");
+  command.add_option("--fov", scene.fov, "[degree] Vertical field of view, instead of the scene's")
+      .type_name("DEGREES");
 }
 
 void add_scene_options(Command command, RunOptions& options) {
@@ -74,6 +92,8 @@ void add_scene_options(Command command, RunOptions& options) {
   command.add_option("--size", options.scene.size, "Image size in pixels")
       .type_name("WxH")
       .capture_default_str();
+  add_crop_option(command, options.scene.crop);
+  add_camera_options(command, options.scene);
   add_frame_options(command, options.scene.frame);
   command.add_option("--assets", options.scene.assets, "Folder that has the original scene data")
       .type_name("DIR")

@@ -6,6 +6,14 @@
 
 namespace glint::app {
 
+void add_crop_option(Command command, std::string& crop) {
+  command
+      .add_option("--crop", crop,
+                  "Render only this window of the frame, with the pixels that the whole frame of --size has "
+                  "there; X and Y count from the top left")
+      .type_name("X,Y,W,H");
+}
+
 void add_frame_options(Command command, scenes::RenderParams& frame) {
   for (const scenes::RenderParam& p : scenes::RenderParams::params()) {
     if (p.option.empty()) continue;

@@ -57,6 +57,7 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
   job.workload = workload.workload;
   job.frame = options.frame;
   parse_size(options.size, job.frame);
+  parse_crop(options.crop, job.frame);
   job.timing = launch.mode == "timing";
   job.no_skip = launch.no_skip;
   job.threads = launch.threads;
@@ -72,13 +73,18 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
                                                    progress.update(uint64_t(100 * part), 100);
                                                    pipe.update(uint64_t(1000 * part), 1000);
                                                  }});
+  scenes::override_scene(job.scene, options.overrides());
   return job;
 }
 
 std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options,
                      const LaunchOptions& launch) {
-  return fmt::format("{} {}  {}x{}, {} spp, {} on {}", job.scene.name, options.shader, job.frame.width,
-                     job.frame.height, job.frame.samples, launch.mode, launch.config);
+  const scenes::RenderParams& frame = job.frame;
+  const std::string window = frame.frame_width ? fmt::format(" at {},{} of {}x{}", frame.crop_x, frame.crop_y,
+                                                             frame.frame_width, frame.frame_height)
+                                               : "";
+  return fmt::format("{} {}  {}x{}{}, {} spp, {} on {}", job.scene.name, options.shader, frame.width,
+                     frame.height, window, frame.samples, launch.mode, launch.config);
 }
 
 report::RunInfo describe_run(const Session& session, const SceneOptions& options, const LaunchOptions& launch,
@@ -92,6 +98,7 @@ report::RunInfo describe_run(const Session& session, const SceneOptions& options
   info.scene_fraction = job.scene.fraction();
   info.shader = options.shader;
   info.frame = scenes::values_of(job.frame);
+  info.overrides = options.overrides();
   info.on_fault = exec::name_of(launch.on_fault);
   info.compact = launch.compact();
   return info;
@@ -122,6 +129,27 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
 }
 
 }  // namespace
+
+std::vector<scenes::Override> SceneOptions::overrides() const {
+  std::vector<scenes::Override> out;
+  for (const auto& [key, value] : {std::pair("camera.eye", &eye),
+                                   {"camera.look-at", &look_at},
+                                   {"camera.up", &up},
+                                   {"camera.fov", &fov}})
+    if (!value->empty()) out.emplace_back(key, *value);
+  return out;
+}
+
+std::string SceneOptions::given() const {
+  for (const auto& [name, is_given] : {std::pair("--exr", exr),
+                                       {"--crop", !crop.empty()},
+                                       {"--eye", !eye.empty()},
+                                       {"--look-at", !look_at.empty()},
+                                       {"--up", !up.empty()},
+                                       {"--fov", !fov.empty()}})
+    if (is_given) return name;
+  return "";
+}
 
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
   refuse_file(options.scene);

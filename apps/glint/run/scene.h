@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <vector>
 
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/session.h"
 #include "scenes/camera.h"
+#include "scenes/overrides.h"
 
 namespace glint::app {
 
@@ -16,6 +18,11 @@ struct SceneOptions {
   bool instancing = false, shader_given = false;
   bool exr = false;  // also keep the picture as image.exr
   scenes::RenderParams frame;
+  std::string crop;                                 // window of the frame; empty: all of it
+  std::string eye, look_at, up, fov;                // of the camera; empty: as the scene has it
+  std::vector<scenes::Override> overrides() const;  // what these change
+  // Returns the first option that was given and has no meaning for what is not a scene, or "".
+  std::string given() const;
 };
 
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch);
