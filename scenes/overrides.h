@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,10 +13,24 @@ namespace glint::scenes {
 // Says what to change: a key and its new value as text.
 //   camera.eye, camera.look-at, camera.up   X,Y,Z in world units
 //   camera.fov                              vertical field of view in degrees, above 0 and below 180
+//   light.sky                               on or off
+//   light.position, light.radius            X,Y,Z and a length in world units; only without a sky
+//   material.NAME.KEY                       NAME is the number or the name of materials; see material_keys()
 using Override = std::pair<std::string, std::string>;
 
-// Makes the changes. Throws UserError, which names the option, when a value is not of its key's kind, and
-// when no ray can leave the camera that results.
+// Returns the keys of a material: what can be changed, and the form of its values.
+std::vector<std::pair<std::string_view, std::string_view>> material_keys();
+
+// Return the changes that the texts of options ask for: "KEY=VALUE" of the light, and "NAME.KEY=VALUE" of a
+// material. A name may hold dots. Throw UserError for texts of another form.
+Override light_override(const std::string& text);
+Override material_override(const std::string& text);
+
+// Makes the changes. Throws UserError, which names the option, when a value is not of its key's kind, when
+// the scene has no such material, when the light has no effect, and when no ray can leave the camera that
+// results.
 void override_scene(Scene& scene, const std::vector<Override>& overrides);
+
+std::string_view name_of(MaterialModel model);  // "lambertian", "metallic", ...
 
 }  // namespace glint::scenes

@@ -117,7 +117,11 @@ std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& fil
     indices.push_back(int32_t(scene.materials.size()));
     scene.materials.push_back(material);
   };
-  for (const tinygltf::Material& m : file.materials) add(reader.read(m));
+  for (const tinygltf::Material& m : file.materials) {
+    add(reader.read(m));
+    scene.material_names.resize(scene.materials.size());
+    scene.material_names.back() = m.name;
+  }
   // Choice: a mesh without a material is grey, as in OBJ files without a library; glTF's default is white.
   add(lambertian(0.7f, 0.7f, 0.7f));
   return indices;

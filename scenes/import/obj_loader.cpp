@@ -151,11 +151,13 @@ std::string find_asset(const std::string& assets, const std::string& scene,
                               fmt::join(candidates, ", ")));
 }
 
-Model load_obj(const std::string& path, std::vector<Material>& materials, std::vector<Texture>* textures) {
+Model load_obj(const std::string& path, std::vector<Material>& materials, std::vector<Texture>* textures,
+               std::vector<std::string>* names) {
   const tinyobj::ObjReader reader = read(path);
   const auto base = int32_t(materials.size());
   for (const tinyobj::material_t& m : reader.GetMaterials()) {
     materials.push_back(material_of(m));
+    if (names) names->push_back(m.name);
     if (textures)
       add_texture(materials.back(), m.diffuse_texname, std::filesystem::path(path).parent_path(), *textures);
   }

@@ -22,10 +22,11 @@ std::string find_asset(const std::string& assets, const std::string& scene,
 //  - Materials are Lambertian with colour Kd; a file without a material library has one of grey 0.7.
 //  - With `textures`, every material that names a map_Kd gets a texture of its own, even where two materials
 //    name the same file, and a black Kd becomes white.
+//  - With `names`, the materials' names in the file are appended there.
 //  - A file that was cut into parts, FILE.aa FILE.ab ..., is read as one when FILE itself does not exist.
 // Throws UserError when the file, its library or a texture cannot be read.
 Model load_obj(const std::string& path, std::vector<Material>& materials,
-               std::vector<Texture>* textures = nullptr);
+               std::vector<Texture>* textures = nullptr, std::vector<std::string>* names = nullptr);
 
 // Returns the materials of an MTL file by the same rules, without textures.
 std::vector<Material> load_materials(const std::string& path);

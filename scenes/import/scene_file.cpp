@@ -44,7 +44,7 @@ Camera camera_around(const Bounds& box) {
 
 Scene load_obj_scene(const std::string& path) {
   Scene scene;
-  scene.models.push_back(load_obj(path, scene.materials, &scene.textures));
+  scene.models.push_back(load_obj(path, scene.materials, &scene.textures, &scene.material_names));
   if (scene.models[0].indices.empty()) throw UserError({path}, "this file has no triangles");
   scene.models[0].name = fs::path(path).stem().string();
   return scene;

@@ -131,5 +131,58 @@ class Camera(FrameTest):
         self.expect(2, ["--eye belongs to scenes"], "run", ROOT / "examples/mandelbrot/pipeline.toml", "--eye", "0,0,1")
 
 
+class Overrides(FrameTest):
+    def listed(self, scene):
+        """Returns the rows of `glint list materials` by number."""
+        done = self.glint("list", "materials", scene)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_a_material_becomes_what_the_file_could_have_said(self):
+        names = "mtllib {}\n" + OBJ.replace("f 1 2 3 4", "usemtl wood.001\nf 1 2 3\nusemtl b\nf 1 3 4")
+        self.write("a.mtl", "newmtl wood.001\nKd 0.5 0.5 0.5\nnewmtl b\nKd 0.25 0.5 0.75\n")
+        self.write("z.mtl", "newmtl wood.001\nKd 1 0.25 0\nnewmtl b\nKd 0.5 0 1\n")
+        self.write("a.obj", names.format("a.mtl"))
+        (self.folder / "other").mkdir()
+        self.write("other/a.obj", names.format("z.mtl"))
+        shutil.copy(self.folder / "z.mtl", self.folder / "other/z.mtl")
+        self.assertRegex(self.listed("a.obj"), r"0 +wood\.001 +lambertian +0\.5,0\.5,0\.5")
+        self.render("wanted", "other/a.obj", *FAST, "--size", "8x8")
+        self.render("got", "a.obj", *FAST, "--size", "8x8", "--material", "wood.001.diffuse=1,0.25,0", "--material", "1.diffuse=0.5,0,1")
+        self.assertEqual(self.pixels("got"), self.pixels("wanted"))
+        self.assertEqual(self.record("got")["scene"]["hash"], self.record("wanted")["scene"]["hash"])
+        self.assertEqual(self.record("got")["overrides"], {"material.wood.001.diffuse": "1,0.25,0", "material.1.diffuse": "0.5,0,1"})
+
+    def test_compare_knows_overrides_of_names_with_dots(self):
+        self.write("a.mtl", "newmtl wood.001\nKd 0.5 0.5 0.5\n")
+        self.write("a.obj", "mtllib a.mtl\nusemtl wood.001\n" + OBJ)
+        self.render("a", "a.obj", "--size", "8x8", "--spp", "1")
+        self.render("b", "a.obj", "--size", "8x8", "--spp", "1", "--material", "wood.001.model=metallic", "--light", "sky=off", "--light", "position=0,9,3")
+        self.assertIn("overrides.material.wood.001.model is nothing in A and metallic in B", (lambda d: d.stdout + d.stderr)(self.glint("compare", "a", "b")))
+
+    def test_model_repeats_a_run_with_other_materials(self):
+        self.render("a", "CORNELL", "--size", "8x8", "--spp", "1", "--material", "2.model=metallic", "--material", "2.fuzziness=0.5")
+        done = self.glint("model", "a", "-o", "models.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_light_without_a_sky_moves_shadows(self):
+        for out, place in (("a", "278,500,200"), ("b", "278,-500,400")):
+            self.render(out, "CORNELL", "--shader", "sh", *FAST, "--size", "16x16", "--light", f"position={place}")
+        self.assertTrue(self.pixels("a") != self.pixels("b"))
+
+    def test_what_no_scene_has_is_refused(self):
+        for text, parts in (("9.diffuse=1,1,1", ["there is no material '9'", "glint list materials"]), ("floor.diffuse=1,1,1", ["there is no material 'floor'"]),
+                            ("0.diffuse=1,1", ["--material 0.diffuse is '1,1'", "R,G,B"]), ("0.model=wood", ["lambertian"]), ("0.fuzziness=2", ["0 to 1"]),
+                            ("0.refraction_index=0", ["1 to 100"]), ("0.texture=99", ["number of a texture"]), ("0.texture=0.5", ["number of a texture"]), ("0.colour=1", ["the keys are"]),
+                            ("diffuse=1,1,1", ["NAME.KEY=VALUE"]), ("0.diffuse=nan,1,1", ["R,G,B"]), ("-1.diffuse=1,1,1", ["there is no material"])):
+            self.expect(2, parts, "run", "CORNELL", f"--material={text}")
+        for text, parts in (("sky=maybe", ["on or off"]), ("position=1,2", ["X,Y,Z"]), ("radius=-1", ["length"]), ("colour=1", ["a light has no 'colour'"]), ("sky", ["KEY=VALUE"])):
+            self.expect(2, parts, "run", "CORNELL", f"--light={text}")
+        self.expect(2, ["WKND has a sky", "--light sky=off"], "run", "WKND", "--light", "radius=2")
+        self.expect(2, ["--material belongs to scenes"], "run", ROOT / "examples/mandelbrot/pipeline.toml", "--material", "0.diffuse=1,1,1")
+        self.expect(2, ["which scene"], "list", "materials")
+        self.expect(2, ["'WKND' goes with materials"], "list", "scenes", "WKND")
+
+
 if __name__ == "__main__":
     main()

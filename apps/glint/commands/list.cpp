@@ -1,4 +1,4 @@
-// Declares `glint list WHAT`: scenes, shaders, workloads, configs, policies, ops, stats, metrics.
+// Declares `glint list WHAT`: scenes, materials, shaders, workloads, configs, policies, ops, stats, metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
@@ -13,6 +13,7 @@
 #include "report/metrics/metrics.h"
 #include "report/metrics/vulkan_sim.h"
 #include "report/terminal/table.h"
+#include "scenes/overrides.h"
 #include "scenes/scene.h"
 
 namespace glint::app {
@@ -91,7 +92,32 @@ Rows test_rows() {
   return rows;
 }
 
-Exit list(const Session& session, const std::string& what, bool markdown, bool tests) {
+// Returns number, name, and the values that --material can change.
+Rows material_rows(const std::string& name, const std::string& assets) {
+  if (name.empty())
+    throw UserError({}, "the materials of which scene?", "for example `glint list materials WKND`");
+  const scenes::Scene scene = scenes::load_scene(name, {assets, false, {}});
+  Rows rows = {{"number", "name", "model", "diffuse", "fuzziness", "refraction_index", "texture"}};
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const scenes::Material& m = scene.materials[i];
+    rows.push_back({fmt::format("{}", i), i < scene.material_names.size() ? scene.material_names[i] : "",
+                    std::string(scenes::name_of(m.model)),
+                    fmt::format("{:.6g},{:.6g},{:.6g}", m.diffuse[0], m.diffuse[1], m.diffuse[2]),
+                    fmt::format("{:.6g}", m.fuzziness), fmt::format("{:.6g}", m.refraction_index),
+                    m.texture < 0 ? "none" : fmt::format("{}", m.texture)});
+  }
+  return rows;
+}
+
+struct ListOptions {
+  std::string what, scene, assets;
+  bool markdown = false, tests = false;
+};
+
+Exit list(const Session& session, const ListOptions& options) {
+  const auto& [what, scene, assets, markdown, tests] = options;
+  if (!scene.empty() && what != "materials")
+    throw UserError({}, fmt::format("'{}' goes with materials, and not with {}", scene, what));
   if (tests && what != "ops")
     throw UserError({}, fmt::format("--tests goes with ops, and not with {}", what),
                     "`glint list ops --tests` prints the test of each op");
@@ -104,6 +130,7 @@ Exit list(const Session& session, const std::string& what, bool markdown, bool t
     return Exit::Ok;
   }
   const Rows rows = what == "scenes"      ? scene_rows()
+                    : what == "materials" ? material_rows(scene, assets)
                     : what == "shaders"   ? shader_rows()
                     : what == "workloads" ? workload_rows()
                     : what == "configs"   ? config_rows(session.resources)
@@ -117,24 +144,22 @@ Exit list(const Session& session, const std::string& what, bool markdown, bool t
 }  // namespace
 
 void add_list(Command app, Session& session) {
-  struct Options {
-    std::string what;
-    bool markdown = false, tests = false;
-  };
-  auto options = std::make_shared<Options>();
-  Command command =
-      app.add_subcommand("list", "List scenes, shaders, workloads, configs, policies, ops, stats or metrics");
+  auto options = std::make_shared<ListOptions>();
+  Command command = app.add_subcommand(
+      "list", "List scenes, materials, shaders, workloads, configs, policies, ops, stats or metrics");
   command.add_option("WHAT", options->what, "What to list")
       .required()
-      .one_of({"scenes", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"});
+      .one_of(
+          {"scenes", "materials", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"});
+  command.add_option("SCENE", options->scene, "Scene or file whose materials to list (with materials)");
+  command.add_option("--assets", options->assets, "Folder that has the original scene data (with materials)")
+      .type_name("DIR")
+      .envname("GLINT_ASSETS");
   command.add_flag("--markdown", options->markdown,
                    "Print stats or metrics as docs/stats.md and docs/metrics.md have them");
   command.add_flag("--tests", options->tests, "Print the test that checks what each op does (with ops)");
-  command.callback([&session, options] {
-    session.action = [&session, options] {
-      return list(session, options->what, options->markdown, options->tests);
-    };
-  });
+  command.callback(
+      [&session, options] { session.action = [&session, options] { return list(session, *options); }; });
 }
 
 }  // namespace glint::app

@@ -69,6 +69,18 @@ void add_camera_options(Command command, SceneOptions& scene) {
       .type_name("DEGREES");
 }
 
+void add_override_options(Command command, SceneOptions& scene) {
+  command
+      .add_option("--light", scene.light,
+                  "Change the light of the scene: sky=on|off, position=X,Y,Z, radius=LENGTH; repeatable")
+      .type_name("KEY=VALUE");
+  command
+      .add_option("--material", scene.materials,
+                  "Change a material of the scene: diffuse=R,G,B, model, fuzziness, refraction_index or "
+                  "texture=none; 'glint list materials SCENE' lists numbers and names; repeatable")
+      .type_name("NAME.KEY=VALUE");
+}
+
 void add_scene_options(Command command, RunOptions& options) {
   command
       .add_option("SCENE", options.scene.scene,
@@ -94,6 +106,7 @@ void add_scene_options(Command command, RunOptions& options) {
       .capture_default_str();
   add_crop_option(command, options.scene.crop);
   add_camera_options(command, options.scene);
+  add_override_options(command, options.scene);
   add_frame_options(command, options.scene.frame);
   command.add_option("--assets", options.scene.assets, "Folder that has the original scene data")
       .type_name("DIR")

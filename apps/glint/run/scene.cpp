@@ -137,6 +137,8 @@ std::vector<scenes::Override> SceneOptions::overrides() const {
                                    {"camera.up", &up},
                                    {"camera.fov", &fov}})
     if (!value->empty()) out.emplace_back(key, *value);
+  for (const std::string& text : light) out.push_back(scenes::light_override(text));
+  for (const std::string& text : materials) out.push_back(scenes::material_override(text));
   return out;
 }
 
@@ -146,7 +148,9 @@ std::string SceneOptions::given() const {
                                        {"--eye", !eye.empty()},
                                        {"--look-at", !look_at.empty()},
                                        {"--up", !up.empty()},
-                                       {"--fov", !fov.empty()}})
+                                       {"--fov", !fov.empty()},
+                                       {"--light", !light.empty()},
+                                       {"--material", !materials.empty()}})
     if (is_given) return name;
   return "";
 }

@@ -20,6 +20,7 @@ struct SceneOptions {
   scenes::RenderParams frame;
   std::string crop;                                 // window of the frame; empty: all of it
   std::string eye, look_at, up, fov;                // of the camera; empty: as the scene has it
+  std::vector<std::string> light, materials;        // KEY=VALUE, NAME.KEY=VALUE
   std::vector<scenes::Override> overrides() const;  // what these change
   // Returns the first option that was given and has no meaning for what is not a scene, or "".
   std::string given() const;
