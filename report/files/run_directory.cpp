@@ -236,6 +236,8 @@ void RunDirectory::write_run(const RunInfo& info) const {
   for (const auto& [file, found] : info.not_finite)
     json["not_finite"][file] = {{"pixels", found.pixels}, {"x", found.x}, {"y", found.y}};
   if (!info.saved.empty()) json["saved"] = info.saved;
+  for (const OutputInfo& output : info.outputs)
+    json["outputs"][output.file] = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};
   written_.erase("run.json");  // A file cannot hold its own sum.
   json["files"] = json_of(written_);
   if (const auto& part = info.part)

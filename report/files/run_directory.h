@@ -42,6 +42,12 @@ struct PartInfo {
   uint64_t cycles = 0, ended_warps = 0, num_warps = 0;
 };
 
+// Names a file that holds an image or a buffer of a pipeline, or a buffer of a kernel.
+struct OutputInfo {
+  std::string file, name;
+  bool is_image = false;
+};
+
 inline constexpr int kRunSchema = 1;  // schema of run.json
 
 // Holds what run.json says besides schema and paths. Only this file of a run holds wall-clock times.
@@ -65,8 +71,9 @@ struct RunInfo {
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
   std::vector<std::pair<std::string, NotFinite>> not_finite;  // pictures with pixels that are not finite
-  std::vector<std::string> saved;  // files that a pipeline or a kernel was asked to keep
-  bool compact = false;            // The statistics are totals over units (stat_totals()).
+  std::vector<std::string> saved;   // files that a pipeline or a kernel was asked to keep
+  std::vector<OutputInfo> outputs;  // what these files hold
+  bool compact = false;             // The statistics are totals over units (stat_totals()).
   std::optional<PartInfo> part;
   int exit = 0;
   std::string message;  // why exit is not 0

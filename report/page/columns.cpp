@@ -237,7 +237,7 @@ Json page_columns(const Json& data) {
     for (const auto& [name, value] : runs[i].items()) {
       if (name == "timeline")
         run[name] = timeline_columns(value);
-      else if (name == "heat")
+      else if (name == "heat" || name == "images")
         run[name] = without_pictures(value);
       else if (name != "stats" && name != "metrics" && name != "config" && name != "picture")
         run[name] = value;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "base/diagnostics.h"
@@ -23,6 +24,7 @@
 #include "report/page/source.h"
 #include "report/page/stats.h"
 #include "report/page/timeline.h"
+#include "report/picture/image_compare.h"
 
 namespace glint::report {
 namespace {
@@ -118,6 +120,30 @@ void add_timeline(const PageRun& run, const ListedFiles& files, Json& out) {
     throw UserError({run.directory}, "the run has no trace, and so no timeline", "run it again with --trace");
 }
 
+// Adds the images that a pipeline saved as pictures, each once. PFM and EXR files are shown with 8 bits.
+void add_images(const PageRun& run, const ListedFiles& files, Json& out) {
+  const Json outputs = out["run"].value("outputs", Json::object());
+  std::set<std::string> seen;
+  Json images = Json::array();
+  for (const auto& [file, output] : outputs.items()) {
+    const bool is_png = file.ends_with(".png");
+    if (!output.is_object() || output.value("kind", "") != "image" ||
+        !(is_png || file.ends_with(".pfm") || file.ends_with(".exr")))
+      continue;
+    const std::string name = output.value("name", "");
+    const auto bytes = seen.contains(name) ? std::nullopt : files.read(file);
+    if (!bytes) continue;
+    const Picture picture = read_picture(run.directory + "/" + file);
+    seen.insert(name);
+    images.push_back({{"name", name},
+                      {"file", file},
+                      {"width", picture.width},
+                      {"height", picture.height},
+                      {"picture", "data:image/png;base64," + base64(is_png ? *bytes : png_of(picture))}});
+  }
+  if (!images.empty()) out["images"] = std::move(images);
+}
+
 Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   const std::string& directory = run.directory;
   Json out = {{"directory", directory}, {"run", facts_of(directory)}};
@@ -139,6 +165,7 @@ Json run_json(const PageRun& run, Json& stat_docs, Json& key_docs) {
   }
   if (const std::vector<CostMap> maps = read_heat(files); !maps.empty()) out["heat"] = page_heat(maps);
   add_timeline(run, files, out);
+  add_images(run, files, out);
   if (const auto png = files.read("image.png")) out["picture"] = "data:image/png;base64," + base64(*png);
   return out;
 }

@@ -17,6 +17,9 @@ struct Picture {
 // UserError for other files, and for damaged ones.
 Picture read_picture(const std::string& path);
 
+// Returns the picture as PNG of 8 bits.
+std::string png_of(const Picture& picture);
+
 // Returns whether there is no distance between two pixels. Two values are the same when they are equal, when
 // both are not a number, or when both are the same infinity. A pixel is beyond measure when the values of a
 // channel are not the same and one of them is not finite. `pixel` counts row by row from the top.

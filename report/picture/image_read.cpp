@@ -1,9 +1,10 @@
-// Reads the pictures that runs leave, and others to compare them with.
+// Reads the pictures that runs leave, and others to compare them with, and encodes them to be seen.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
 #include "pictures/decode.h"
+#include "pictures/encode.h"
 #include "report/picture/image_compare.h"
 
 namespace glint::report {
@@ -19,6 +20,12 @@ Picture read_picture(const std::string& path) {
     out.rgb[i] = picture.floats.empty() ? float(picture.bytes[from]) / 255.0f : picture.floats[from];
   }
   return out;
+}
+
+std::string png_of(const Picture& picture) {
+  std::vector<float> rgba(picture.rgb.size() / 3 * 4, 1.0f);
+  for (size_t i = 0; i < picture.rgb.size(); ++i) rgba[i / 3 * 4 + i % 3] = picture.rgb[i];
+  return pictures::png_bytes({picture.width, picture.height, rgba});
 }
 
 }  // namespace glint::report

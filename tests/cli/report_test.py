@@ -1,6 +1,7 @@
 # Tests what `glint report`, `compare` and `imgdiff` write: the page is whole, loads nothing from elsewhere, and holds the numbers of stats.json.
 # SPDX-License-Identifier: Apache-2.0
 """usage: report_test.py GLINT SOURCE_DIR SUITE..."""
+import base64
 import csv
 import json
 import math
@@ -316,6 +317,35 @@ class Compare(ReportTest):
         self.assertRegex(a, r"largest +0 ")
         self.assertRegex(b, r"largest +0\.25 ")
         self.expect(2, ["--out takes one picture"], "imgdiff", "first", "second", "-o", "d.png")
+        self.write("fill.toml", (self.folder / "fill.toml").read_text().replace("b.pfm", "other.exr"))
+        done = self.glint("run", "fill.toml", "-D", "VALUE=0.5", "--mode", "functional", "--out", "third")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = self.glint("imgdiff", "first", "third", "--min-psnr", "inf")
+        self.assertEqual(said.returncode, 0, said.stderr)
+        for note in ("only 'first' has b.pfm", "only 'third' has other.exr"):
+            self.assertIn(note, said.stderr)
+
+    def test_the_page_of_a_pipeline_shows_every_image_by_its_name(self):
+        self.write("fill.comp", "#version 460\nlayout(local_size_x = 8) in;\nlayout(binding = 0, rgba32f) uniform image2D a;\nlayout(binding = 1, rgba32f) uniform image2D b;\n"
+                                "layout(binding = 2) buffer N { uint n[8]; };\nvoid main() { ivec2 at = ivec2(gl_GlobalInvocationID.xy); imageStore(a, at, vec4(0.5)); "
+                                "imageStore(b, at, vec4(1)); n[at.x] = 7; }\n")
+        self.write("fill.toml", "[compute]\nshader = 'fill.comp'\n[launch]\ngroups = [1, 4]\n"
+                                "[[image]]\nname = 'albedo'\nbinding = 0\nsize = [8, 4]\nsave = ['albedo.exr', 'albedo.png']\n"
+                                "[[image]]\nname = 'shade'\nbinding = 1\nsize = [8, 4]\nsave = 'light.pfm'\n"
+                                "[[buffer]]\nname = 'numbers'\nbinding = 2\ncount = 8\ntype = 'u32'\nsave = 'n.csv'\n")
+        done = self.glint("run", "fill.toml", "--mode", "timing", "--out", "run")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads((self.folder / "run/run.json").read_text())["outputs"],
+                         {"albedo.exr": {"name": "albedo", "kind": "image"}, "albedo.png": {"name": "albedo", "kind": "image"},
+                          "light.pfm": {"name": "shade", "kind": "image"}, "n.csv": {"name": "numbers", "kind": "buffer"}})
+        done = self.glint("report", "run", "-o", "page.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / "page.html").read_text()
+        found = re.findall(r'data-map="image:([^"]*)" src="data:image/png;base64,([^"]*)"><figcaption>([^<]*)<', page)
+        self.assertEqual([(name, caption.split(": ")[1]) for name, _, caption in found], [("albedo", "albedo (albedo.exr)"), ("shade", "shade (light.pfm)")])
+        for (_, data, _), grey in zip(found, (128, 255)):
+            (self.folder / "shown.png").write_bytes(base64.b64decode(data))
+            self.assertEqual(glint_case.read_png(self.folder / "shown.png"), (8, 4, bytes([grey] * 96)))
 
     def test_compare_refuses_what_it_cannot_read(self):
         run = self.runs["wknd"]

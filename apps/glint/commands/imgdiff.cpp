@@ -1,8 +1,11 @@
 // Declares `glint imgdiff A B`, which measures how far apart two pictures are, with an exit code for scripts.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <set>
@@ -13,7 +16,6 @@
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
-#include "pictures/encode.h"
 #include "report/files/file_list.h"
 #include "report/files/run_record.h"
 #include "report/picture/flip.h"
@@ -63,6 +65,14 @@ std::string picture_of(const std::string& path) {
   return path + "/" + *names.begin();
 }
 
+// Says which pictures only one of the runs has.
+void tell_alone(const std::set<std::string>& names, const std::set<std::string>& others,
+                const std::string& directory) {
+  std::vector<std::string> alone;
+  std::ranges::set_difference(names, others, std::back_inserter(alone));
+  if (!alone.empty()) fmt::print(stderr, "note: only '{}' has {}\n", directory, fmt::join(alone, ", "));
+}
+
 // Returns what to compare: two pictures, or all that two runs have in common.
 std::vector<PicturePair> pairs_of(const ImgdiffOptions& options) {
   const auto is_run = [](const std::string& path) {
@@ -71,9 +81,13 @@ std::vector<PicturePair> pairs_of(const ImgdiffOptions& options) {
   };
   if (!is_run(options.a) || !is_run(options.b)) return {{picture_of(options.a), picture_of(options.b), ""}};
   std::vector<PicturePair> pairs;
-  const std::set<std::string> others = pictures_of(options.b);
-  for (const std::string& name : pictures_of(options.a))
+  const std::set<std::string> ours = pictures_of(options.a), others = pictures_of(options.b);
+  for (const std::string& name : ours)
     if (others.contains(name)) pairs.push_back({options.a + "/" + name, options.b + "/" + name, name});
+  if (!pairs.empty()) {
+    tell_alone(ours, others, options.a);
+    tell_alone(others, ours, options.b);
+  }
   if (pairs.size() == 1) pairs[0].name.clear();
   if (pairs.empty())
     throw UserError(
@@ -83,12 +97,6 @@ std::vector<PicturePair> pairs_of(const ImgdiffOptions& options) {
     throw UserError({}, fmt::format("--out takes one picture, and the runs have {} in common", pairs.size()),
                     "name the two files instead of the directories");
   return pairs;
-}
-
-std::string png_of(const report::Picture& picture) {
-  std::vector<float> rgba(picture.rgb.size() / 3 * 4, 1.0f);
-  for (size_t i = 0; i < picture.rgb.size(); ++i) rgba[i / 3 * 4 + i % 3] = picture.rgb[i];
-  return pictures::png_bytes({picture.width, picture.height, rgba});
 }
 
 std::string measures(const report::Picture& a, const report::ImageDifference& d, const report::Flip& flip,
@@ -149,7 +157,7 @@ Exit compare_pair(const ImgdiffOptions& options, const PicturePair& pair) {
   const report::Flip flip = report::flip(a, b, options.pixels_per_degree);
   const std::string title = pair.name.empty() ? "" : fmt::format("== {}\n", pair.name);
   write_output("", title + measures(a, d, flip, options.pixels_per_degree));
-  if (!options.out.empty()) write_output(options.out, png_of(drawn(options, a, b, d.largest, flip)));
+  if (!options.out.empty()) write_output(options.out, report::png_of(drawn(options, a, b, d.largest, flip)));
   tell_not_finite(pair, a, b, d);
   if (d.psnr < options.min_psnr) fmt::print(stderr, "failed: PSNR below {} dB\n", options.min_psnr);
   if (flip.mean > options.max_flip)

@@ -109,10 +109,15 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   info.scene_hash = report::fnv1a(everything);
   for (const pipeline::ShaderModule& module : world.modules().all())
     info.shader += (info.shader.empty() ? "" : " ") + module.name;
-  for (const auto& image : world.description().images)
-    for (const pipeline::Save& save : image.saves) info.saved.push_back(save.file);
-  for (const auto& buffer : world.description().buffers)
-    for (const pipeline::Save& save : buffer.saves) info.saved.push_back(save.file);
+  const auto add = [&](const auto& resources, bool is_image) {
+    for (const auto& resource : resources)
+      for (const pipeline::Save& save : resource.saves) {
+        info.saved.push_back(save.file);
+        info.outputs.push_back({save.file, resource.name, is_image});
+      }
+  };
+  add(world.description().images, true);
+  add(world.description().buffers, false);
   info.frame[0].second = world.world.launch_size[0];
   info.frame[1].second = world.world.launch_size[1];
   return info;

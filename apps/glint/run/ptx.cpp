@@ -136,7 +136,10 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   info.on_fault = exec::name_of(options.on_fault);
   info.compact = options.compact();
   for (const LaunchArgument& argument : launch.arguments)
-    if (argument.is_buffer && argument.save) info.saved.push_back(argument.name + ".bin");
+    if (argument.is_buffer && argument.save) {
+      info.saved.push_back(argument.name + ".bin");
+      info.outputs.push_back({argument.name + ".bin", argument.name});
+    }
   begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(

@@ -19,7 +19,8 @@ function viewer(run, maps) {
   const { width, height } = maps[0], factor = Math.floor(kViewerWidth / width);
   const size = factor ? `width:${factor * width}px` : `width:${kViewerWidth}px`;
   const image = h("img", { class: "over", alt: "" }), edge = h("div", { class: "edge" });
-  const below = run.data.picture ? h("img", { class: "under", src: run.data.picture, alt: `Picture of ${run.workload}` }) : null;
+  const picture = run.data.picture ?? run.data.images?.find((image) => image.width === width && image.height === height)?.picture;
+  const below = picture ? h("img", { class: "under", src: picture, alt: `Picture of ${run.workload}` }) : null;
   const box = h("div", { class: "viewer", style: `${size};aspect-ratio:${width}/${Math.max(height, width / 16)}` }, below, image, below ? edge : null);
   const slide = (percent) => {
     image.style.clipPath = `inset(0 0 0 ${percent}%)`;

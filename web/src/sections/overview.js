@@ -35,12 +35,22 @@ const numbersOf = (runs) => kNumbers.filter((one) => !one.rays || runs.some((run
 
 const kPictureWidth = 288; // as in report.css
 
-// Shows a small picture enlarged by a whole factor, so that every pixel is a square.
-function pictureOf(run) {
-  if (!run.data.picture) return null;
-  const factor = Math.floor(kPictureWidth / run.facts.width);
-  return h("img", { class: factor ? "picture pixels" : "picture", style: factor ? `width:${factor * run.facts.width}px` : null, src: run.data.picture, alt: `Picture of ${run.workload}` });
+// Shows a picture. A small one is enlarged by a whole factor, so that every pixel is a square.
+function enlarged(source, width, alt) {
+  const factor = Math.floor(kPictureWidth / width);
+  return h("img", { class: factor ? "picture pixels" : "picture", style: factor ? `width:${factor * width}px` : null, src: source, alt });
 }
+
+// Shows the picture of a scene, or the first image that a pipeline saved.
+function pictureOf(run) {
+  const { picture, images } = run.data;
+  if (picture) return enlarged(picture, run.facts.width, `Picture of ${run.workload}`);
+  return images ? imageOf(run, images[0]) : null;
+}
+
+const imageOf = (run, image) => h("figure", { class: "image", "data-image": image.name }, enlarged(image.picture, image.width, `${image.name} of ${run.workload}`), h("figcaption", { class: "note" }, `${image.name} (${image.file}, ${image.width}×${image.height})`));
+
+const thumbOf = (run) => run.data.picture ?? run.data.images?.[0].picture;
 
 function single(run) {
   const { facts } = run;
@@ -50,6 +60,7 @@ function single(run) {
   return [
     h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, run.workload), h("p", { class: "about" }, about(run))),
     h("div", { class: picture ? "key with-picture" : "key" }, picture, h("dl", { class: "numbers" }, numbers)),
+    run.data.images?.length > 1 ? h("div", { class: "images" }, run.data.images.slice(1).map((image) => imageOf(run, image))) : null,
     details ? h("p", { class: "note" }, details) : null,
   ];
 }
@@ -62,7 +73,7 @@ function several(runs) {
     h(
       "tr",
       {},
-      h("td", { class: "thumb" }, run.data.picture ? h("img", { src: run.data.picture, alt: "" }) : null),
+      h("td", { class: "thumb" }, thumbOf(run) ? h("img", { src: thumbOf(run), alt: "" }) : null),
       h("th", { scope: "row", title: run.data.directory }, h("span", { class: "dot", style: `background:var(--${runColour(run.index)})` }), run.label, h("small", {}, about(run))),
       numbers.map((one, k) => h("td", { class: "n", "data-stat": one.stat, "data-value": values[k][i], "data-best": values[k][i] === best[k] }, one.text(values[k][i]))),
     );
