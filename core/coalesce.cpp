@@ -10,41 +10,46 @@
 namespace glint::core {
 
 void LineList::add(Address physical, uint32_t bytes, int lane) {
-  const Address first = physical / mem::kSectorBytes;
-  const Address last = (physical + bytes - 1) / mem::kSectorBytes;
-  for (Address sector = first; sector <= last; ++sector) {
-    const Address address = sector * mem::kSectorBytes, line = address & ~mask_;
-    // These are the parts of the line that lie as a whole in the sector and in [physical, physical + bytes).
-    const uint64_t round_up = (uint64_t{1} << part_shift_) - 1;
-    const uint64_t begin = (std::max(physical, address) - line + round_up) >> part_shift_;
-    const uint64_t end = (std::min(physical + bytes, address + mem::kSectorBytes) - line) >> part_shift_;
-    const uint64_t words = begin < end ? (uint64_t{1} << end) - (uint64_t{1} << begin) : 0;
-    add_sector(line, uint32_t((address & mask_) / mem::kSectorBytes), mem::WordMask(words),
-               LaneMask{1} << lane);
+  const Address end = physical + bytes;
+  // Most accesses of a lane lie in one sector.
+  for (Address at = physical; at < end;) {
+    const Address sector_end = std::min(end, (at | (mem::kSectorBytes - 1)) + 1);
+    LineSectors& line = at_line(at & ~mask_);
+    line.sectors |= uint8_t(1u << ((at & mask_) / mem::kSectorBytes));
+    line.words |= words_of(at & mask_, uint32_t(sector_end - at));
+    line.lanes |= LaneMask{1} << lane;
+    at = sector_end;
   }
 }
 
-void LineList::add_sector(Address line, uint32_t sector, mem::WordMask words, LaneMask lanes) {
-  const auto bit = uint8_t(1u << sector);
-  // Neighbouring lanes mostly share a line, so the line hit last is tried first.
-  if (count_ > 0 && lines_[last_].line == line) {
-    lines_[last_].sectors |= bit;
-    lines_[last_].words |= words;
-    lines_[last_].lanes |= lanes;
-    return;
-  }
-  for (uint32_t i = count_; i-- > 0;) {
-    if (lines_[i].line == line) {
-      lines_[i].sectors |= bit;
-      lines_[i].words |= words;
-      lines_[i].lanes |= lanes;
-      last_ = i;
-      return;
-    }
-  }
+void LineList::add_row(Address physical, LaneMask lanes) {
+  if (mask_ + 1 != kRowBytes || (physical & mask_) != 0)
+    return for_each_lane(lanes, [&](int lane) { add(physical + Address(lane) * 4, 4, lane); });
+  constexpr uint32_t kLanesPerSector = mem::kSectorBytes / 4;
+  LineSectors& line = at_line(physical);
+  for (uint32_t sector = 0; sector < kRowBytes / mem::kSectorBytes; ++sector)
+    if (lanes >> (sector * kLanesPerSector) & ((1u << kLanesPerSector) - 1))
+      line.sectors |= uint8_t(1u << sector);
+  line.words |= lanes;  // A part of a line is a word here.
+  line.lanes |= lanes;
+}
+
+// Returns the parts of a line that lie as a whole in the `bytes` bytes from `offset` on.
+mem::WordMask LineList::words_of(Address offset, uint32_t bytes) const {
+  const uint64_t begin = (offset + (uint64_t{1} << part_shift_) - 1) >> part_shift_;
+  const uint64_t end = (offset + bytes) >> part_shift_;
+  return begin < end ? mem::WordMask((uint64_t{1} << end) - (uint64_t{1} << begin)) : 0;
+}
+
+// Returns the entry of a line, and makes it when the line is new. Neighbouring lanes mostly share a line, so
+// the line that was used last is tried first.
+LineSectors& LineList::at_line(Address line) {
+  if (count_ > 0 && lines_[last_].line == line) return lines_[last_];
+  for (uint32_t i = count_; i-- > 0;)
+    if (lines_[i].line == line) return lines_[last_ = i];
   GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
   last_ = count_;
-  lines_[count_++] = {line, bit, {}, words, lanes};
+  return lines_[count_++] = {line, 0, {}, 0, 0};
 }
 
 uint32_t LineList::num_sectors() const {
@@ -61,14 +66,24 @@ void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::
 
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes) {
-  // The access is taken part by part, because the hardware moves one word of every lane at a time.
-  for (uint32_t byte = 0; byte < bytes; byte += 4) {
-    for_each_lane(lanes, [&](int lane) {
-      const uint64_t word = (access.address[size_t(lane)] + byte) / 4;
-      out.add(layout.base + ((uint64_t{warp_slot} * layout.words + word) * kLanes + uint64_t(lane)) * 4, 4,
-              lane);
-    });
-  }
+  if (lanes == 0) return;
+  const auto word_of = [&](LaneMask rest) { return access.address[size_t(std::countr_zero(rest))] / 4; };
+  const auto with_word = [&](Address word, LaneMask rest) {
+    LaneMask same = 0;
+    for_each_lane(rest,
+                  [&](int lane) { same |= LaneMask{access.address[size_t(lane)] / 4 == word} << lane; });
+    return same;
+  };
+  const LaneMask first = with_word(word_of(lanes), lanes);  // mostly all lanes
+  // The access is taken part by part, because the hardware moves one word of every lane at a time. Lanes that
+  // want the same word of their stacks have it in one row.
+  for (uint32_t byte = 0; byte < bytes; byte += 4)
+    for (LaneMask rest = lanes, same = first; rest; rest &= ~same) {
+      const Address wanted = word_of(rest);
+      if (rest != lanes) same = with_word(wanted, rest);
+      const uint64_t word = uint64_t{warp_slot} * layout.words + wanted + byte / 4;
+      out.add_row(layout.base + word * LineList::kRowBytes, same);
+    }
 }
 
 void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,

@@ -29,18 +29,23 @@ struct LineSectors {
 // Holds the lines that one warp instruction touches, in the order of their first lane.
 class LineList {
  public:
+  static constexpr uint32_t kRowBytes = uint32_t(kLanes) * 4;
+
   explicit LineList(uint32_t line_bytes)
       : mask_(line_bytes - 1), part_shift_(uint32_t(std::countr_zero(line_bytes)) - 5) {}
   void clear() { count_ = last_ = 0; }
   // Adds [physical, physical + bytes), which `lane` touches.
   void add(Address physical, uint32_t bytes, int lane);
+  // Adds the 4-byte words of a row of kRowBytes, of which each lane touches the one with its number.
+  void add_row(Address physical, LaneMask lanes);
   std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
   uint32_t num_sectors() const;
   void set_atomic(size_t line, mem::AtomicLanes atomic) { lines_[line].atomic = atomic; }
   Address offset(Address physical) const { return physical & mask_; }  // offset in its line
 
  private:
-  void add_sector(Address line, uint32_t sector, mem::WordMask words, LaneMask lanes);
+  LineSectors& at_line(Address line);
+  mem::WordMask words_of(Address offset, uint32_t bytes) const;
 
   Address mask_;         // line size - 1
   uint32_t part_shift_;  // shift to one of the 32 parts of a line

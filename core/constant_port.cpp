@@ -36,7 +36,7 @@ void ConstantPort::finish(uint32_t slot, Cycle now) {
   const Load& load = loads_[slot];
   const IssueRow& row = core_.table.row(load.pc);
   at.scoreboard.set(core_.table.defs(row), {now + load.latency, row.wait}, row.pipe);
-  core_.counts.end(row, now + load.latency - load.issued);
+  core_.counts.end(load.pc, now + load.latency - load.issued);
   if (now == load.issued) return;
   at.front = {now, Stall::Const};
   ++core_.counts.progress;

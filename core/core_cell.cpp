@@ -20,7 +20,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       table_(*context.world.image, params),
       executor_(context.world, context.clock_mhz),
       view_(context.turn ? std::make_unique<exec::MemoryView>() : nullptr),
-      counts_(context.parent, context.name),
+      counts_(context.parent, context.name, context.world.image->code.size()),
       code_(CodeSupply::make(params_, context.world, context.places, context.l1, &counts_.stats)),
       warps_(occupancy(params, context.world.image->num_registers), params_, context.world, table_,
              code_ ? code_->fetch() : nullptr, observers_),
@@ -32,7 +32,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       constants_(parts(), code_ ? code_->constants() : nullptr),
       rays_(parts(), context.rt),
       barriers_(parts()),
-      issue_(parts(), {memory_, constants_, rays_, barriers_}, {lsu_, context.rt}),
+      issue_(parts(), {memory_, constants_, rays_, barriers_}, doors_),
       seat_{0, warps_.size(), context.index, context.cores} {
   executor_.use(view_.get());
 }
@@ -131,7 +131,7 @@ void CoreCell::step(Cycle now) {
   memory_.take_answers(now);
   rays_.take_answers(now);
   for (Scheduler& scheduler : warps_.schedulers()) {
-    if (!scheduler.is_awake(now, lsu_) && !no_skip_) continue;
+    if (!scheduler.is_awake(now, doors_) && !no_skip_) continue;
     issue_.run(scheduler, now);
     if (fault()) break;
   }
@@ -165,6 +165,7 @@ void CoreCell::finish(Cycle end) {
   become_empty();
   account_until(end);
   sampler_.finish(end);
+  counts_.settle(table_, *world_.image);
   CoreStats& stats = counts_.stats;
   const exec::CandidateCounts& candidates = executor_.candidates();
   for (int stage = 0; stage < kNumStages; ++stage)

@@ -120,7 +120,7 @@ class CoreCell final : public Cell {
     return memory_.readers_of(access, line, slot);
   }
   IntervalSampler& sampler() { return sampler_; }
-  // Return warp instructions and lanes by op, indexed as isa::op_table().
+  // Return warp instructions and lanes by op, indexed as isa::op_table(). They are complete after finish().
   const std::vector<uint64_t>& op_counts() const { return counts_.op_counts; }
   const std::vector<uint64_t>& op_lanes() const { return counts_.op_lanes; }
   // Returns the cycles of every warp instruction that waits for memory, from its issue to its last sector.
@@ -146,6 +146,7 @@ class CoreCell final : public Cell {
   const std::unique_ptr<CodeSupply> code_;  // null when instructions and constants are always present
   WarpSlots warps_;
   Lsu lsu_;
+  const Doors doors_{lsu_, rt_};
   MemoryAccesses memory_;
   ConstantPort constants_;
   RayDoor rays_;

@@ -1,30 +1,27 @@
-// Counts an issued instruction.
+// Adds up the counts of instructions by class, stage and op.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/core_counts.h"
 
-#include "base/num_lanes.h"
-
 namespace glint::core {
 
-void CoreCounts::issue(uint32_t scheduler, const IssueRow& row, const exec::Issued& issued) {
-  const uint64_t lanes = num_lanes(issued.lanes);
-  if (profile) profile->issue(scheduler, issued.pc, lanes);
-  ++progress;
-  ++stats.instructions;
-  stats.lane_instructions += lanes;
-  stats.lane_slots += uint64_t(kLanes);
-  stats.by_class.add(row.klass);
-  stats.lanes_by_class.add(row.klass, lanes);
-  StageStats& stage = *stats.stage[size_t(row.stage)];
-  stage.instructions.add(row.klass);
-  stage.lanes.add(row.klass, lanes);
-  ++op_counts[issued.inst->op];
-  op_lanes[issued.inst->op] += lanes;
-  if (row.is_conditional) {
-    ++stats.branches;
-    if (issued.lanes != 0 && issued.lanes != issued.active) ++stats.divergent_branches;
+void CoreCounts::settle(const IssueTable& table, const exec::Image& image) {
+  for (uint32_t pc = 0; pc < by_pc_.size(); ++pc) {
+    const auto [issues, lanes, cycles] = by_pc_[pc];
+    const IssueRow& row = table.row(pc);
+    StageStats& stage = *stats.stage[size_t(row.stage)];
+    stats.lane_instructions += lanes;
+    stats.lane_slots += issues * uint64_t(kLanes);
+    stats.by_class.add(row.klass, issues);
+    stats.lanes_by_class.add(row.klass, lanes);
+    stats.latency.add(row.klass, cycles);
+    stage.instructions.add(row.klass, issues);
+    stage.lanes.add(row.klass, lanes);
+    stage.latency.add(row.klass, cycles);
+    op_counts[image.code[pc].op] += issues;
+    op_lanes[image.code[pc].op] += lanes;
+    if (row.is_conditional) stats.branches += issues;
+    if (row.pipe == Pipe::Const) stats.constant_loads += issues;
   }
-  if (row.pipe == Pipe::Const) ++stats.constant_loads;
 }
 
 }  // namespace glint::core

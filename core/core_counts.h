@@ -2,12 +2,14 @@
 // profile.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/num_lanes.h"
 #include "core/core_stats.h"
 #include "core/issue_table.h"
 #include "core/profile.h"
@@ -16,14 +18,33 @@
 
 namespace glint::core {
 
-struct CoreCounts {
-  CoreCounts(stats::Group* parent, std::string name)
-      : stats(parent, std::move(name)), op_counts(isa::op_table().size()), op_lanes(isa::op_table().size()) {}
+// What an instruction counts lies together, by its place in the program. The counts by class, stage and op
+// are sums over these, and exist when settle() has made them at the end of the run: one instruction would
+// otherwise write to ten places of the host's memory.
+class CoreCounts {
+ public:
+  // `num_instructions` is the length of the program.
+  CoreCounts(stats::Group* parent, std::string name, size_t num_instructions)
+      : stats(parent, std::move(name)),
+        op_counts(isa::op_table().size()),
+        op_lanes(isa::op_table().size()),
+        by_pc_(num_instructions) {}
 
   // Counts an instruction that a warp of scheduler `scheduler` has issued.
-  void issue(uint32_t scheduler, const IssueRow& row, const exec::Issued& issued);
-  // Counts an instruction that took `duration` cycles from its issue to its completion.
-  void end(const IssueRow& row, uint64_t duration) { stats.add_latency(row.stage, row.klass, duration); }
+  void issue(uint32_t scheduler, const IssueRow& row, const exec::Issued& issued) {
+    const auto lanes = uint64_t(num_lanes(issued.lanes));
+    if (profile) profile->issue(scheduler, issued.pc, lanes);
+    ++progress;
+    ++stats.instructions;
+    ByPc& counts = by_pc_[issued.pc];
+    ++counts.issues;
+    counts.lanes += lanes;
+    if (row.is_conditional && issued.lanes != 0 && issued.lanes != issued.active) ++stats.divergent_branches;
+  }
+  // Counts that the instruction at `pc` took `duration` cycles from its issue to its completion.
+  void end(uint32_t pc, uint64_t duration) { by_pc_[pc].cycles += duration; }
+  // Adds up what was counted by instruction. It is called once, at the end of the run.
+  void settle(const IssueTable& table, const exec::Image& image);
 
   CoreStats stats;
   // These count warp instructions and lanes by op, indexed as isa::op_table().
@@ -31,6 +52,13 @@ struct CoreCounts {
   mem::Latencies latencies;  // cycles from issue to last sector of warp instructions that wait for memory
   std::unique_ptr<Profile> profile;  // counts by instruction; null: nobody has asked for them
   uint64_t progress = 0;             // grows whenever a warp makes progress
+
+ private:
+  struct ByPc {
+    uint64_t issues = 0, lanes = 0;
+    uint64_t cycles = 0;  // from issue to completion, summed over issues
+  };
+  std::vector<ByPc> by_pc_;
 };
 
 }  // namespace glint::core

@@ -145,12 +145,6 @@ struct CoreStats : stats::Group {
       compute{this, "compute"};
   std::array<StageStats*, kNumStages> stage{&raygen, &intersection, &any_hit, &closest_hit,
                                             &miss,   &callable,     &compute};
-
-  // Notes that an instruction of the stage and class took this long from issue to completion.
-  void add_latency(isa::Stage in, isa::Class klass, uint64_t duration) {
-    latency.add(klass, duration);
-    stage[size_t(in)]->latency.add(klass, duration);
-  }
 };
 
 }  // namespace glint::core

@@ -59,7 +59,7 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
   if (row.pipe == Pipe::Const && units_.constants.is_timed() && issued.lanes)
     return units_.constants.start(slot, row, issued, now);
   WarpSlot& at = core_.warps[slot];
-  core_.counts.end(row, late + row.latency);
+  core_.counts.end(issued.pc, late + row.latency);
   if (row.is_sequence)
     start_sequence(at, row, issued.pc, now);
   else
@@ -80,13 +80,13 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
       break;
     case Finish::Control:
       at.front = {done, row.wait};
-      core_.counts.end(row, late + row.latency);
+      core_.counts.end(issued.pc, late + row.latency);
       break;
     case Finish::Memory:
     case Finish::CallRecord:
       if (!units_.memory.start(slot, row, issued, now)) {
         at.front.at = row.finish == Finish::Memory ? now + 1 : done;
-        core_.counts.end(row, at.front.at - now);
+        core_.counts.end(issued.pc, at.front.at - now);
       }
       break;
     case Finish::Rays:
@@ -94,11 +94,11 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
       break;
     case Finish::Barrier:
       units_.barriers.come(slot, now, row.latency);
-      core_.counts.end(row, row.latency);
+      core_.counts.end(issued.pc, row.latency);
       break;
     case Finish::Fence:
       units_.memory.start_fence(slot, row, issued, now);
-      core_.counts.end(row, row.latency);
+      core_.counts.end(issued.pc, row.latency);
       break;
   }
 }

@@ -42,15 +42,20 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now, bool texture) {
   access.bank_turns = 1;
   access.issued = now;
   access.late_until = 0;
+  ++num_queued_;
+  due_ = std::min(due_, now + 1);
   return access;
 }
 
 void Lsu::tick(Cycle now) {
   completed_.clear();
-  take_answers(now);
   num_accepted_ = 0;
-  for (Group& group : groups_) accept(group, now);
+  if (l1_.has_answer(now, mem::Client::Lsu)) take_answers(now);
+  if (now < due_) return;
+  if (num_queued_ > 0)
+    for (Group& group : groups_) accept(group, now);
   send(now);
+  due_ = find_due(now);
 }
 
 void Lsu::take_answers(Cycle now) {
@@ -73,6 +78,7 @@ void Lsu::accept(Group& group, Cycle now) {
     if (accesses_[id].issued >= now || now < pipe.free_at) continue;
     queue.head = (queue.head + 1) % kMaxQueue;
     --queue.count;
+    --num_queued_;
     ++num_vacated_;
     queue.free_at = now + lsu_unit_.interval;
     group.accept_at = now + params_.accept_interval;
@@ -186,14 +192,15 @@ bool Lsu::send_line(Cycle now, size_t p) {
   return true;
 }
 
-Cycle Lsu::next_event(Cycle now) const {
+Cycle Lsu::find_due(Cycle now) const {
   Cycle next = kNever;
   for (size_t p = 0; p < pipes_.size(); ++p) {
     const Cycle door = p == kShared ? 0 : door_free_[door_of(p)];
     if (pipes_[p].count > 0) next = std::min(next, std::max(accesses_[pipes_[p].front()].ready, door));
   }
-  for (const Group& group : groups_)
+  for (uint32_t g = 0; g < groups_.size() && num_queued_ > 0; ++g)
     for (uint32_t q = 0; q < num_queues_; ++q) {
+      const Group& group = groups_[g];
       const Queue& queue = group.queues[q];
       if (queue.count == 0) continue;
       const MemoryAccess& access = accesses_[queue.id[queue.head]];

@@ -72,7 +72,7 @@ class Lsu {
     ++num_vacated_;
   }
   // Returns the earliest cycle after `now` with work of its own, or kNever. Answers are the L1's events.
-  Cycle next_event(Cycle now) const;
+  Cycle next_event(Cycle now) const { return due_ == kNever ? kNever : std::max(due_, now + 1); }
   bool idle() const { return free_.size() == accesses_.size(); }
 
  private:
@@ -102,6 +102,7 @@ class Lsu {
   Cycle texture_cycles(const MemoryAccess& access) const;
   bool send_line(Cycle now, size_t pipe);
   void finish_shared(Cycle now);
+  Cycle find_due(Cycle now) const;
   void pop(Pipe& pipe);
   static size_t pipe_of(const MemoryAccess& access) {
     return access.lines.lines().empty() ? kShared : access.texture;
@@ -127,6 +128,8 @@ class Lsu {
   std::array<uint32_t, 2> accepted_{};
   uint32_t num_accepted_ = 0;
   uint64_t num_vacated_ = 0;
+  uint32_t num_queued_ = 0;  // accesses in the queues of both groups
+  Cycle due_ = kNever;       // first cycle with work of the unit's own, unless answers of the L1 come before
   std::vector<MemoryAccess> accesses_;
   std::vector<uint32_t> free_, completed_;  // reserved once
 };

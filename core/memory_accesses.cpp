@@ -113,7 +113,7 @@ void MemoryAccesses::complete(uint32_t access_id, Cycle now) {
   const Cycle duration = now - access.issued;
   const IssueRow& row = core_.table.row(access.pc);
   CoreCounts& counts = core_.counts;
-  counts.end(row, duration);
+  counts.end(access.pc, duration);
   if (counts.profile) counts.profile->end(access.pc, duration);
   if (!access.write && !access.lines.lines().empty()) counts.latencies.add(access.traffic, duration);
   deliver(access, row, now);

@@ -26,7 +26,7 @@ void RayDoor::start(uint32_t slot, const IssueRow& row, const exec::Issued& issu
   }
   if (warp.waiting_for_rays) core_.executor.finish_rays(warp);
   at.front = {now + row.latency, Stall::RtWait};
-  core_.counts.end(row, row.latency);
+  core_.counts.end(issued.pc, row.latency);
 }
 
 void RayDoor::take_answers(Cycle now) {
@@ -41,7 +41,7 @@ void RayDoor::complete(uint32_t slot, Cycle now) {
   core_.observers.tell([&](CoreObserver& observer) { observer.end_rays(slot, trip.lanes, at.warp.rays); });
   core_.executor.finish_rays(at.warp);
   at.front = {now + row.latency, Stall::RtWait};
-  core_.counts.end(row, duration);
+  core_.counts.end(trip.pc, duration);
   if (core_.counts.profile) core_.counts.profile->end(trip.pc, duration);
   ++core_.counts.progress;
   core_.warps.refresh(slot, now);

@@ -9,7 +9,8 @@ namespace glint::core {
 Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params)
     : index_(index),
       policy_(params.issue.make({(slots + params.schedulers - 1) / params.schedulers})),
-      has_latches_(params.dispatch_latch) {
+      has_latches_(params.dispatch_latch),
+      has_banks_(params.register_file.banks > 0) {
 }
 
 void Scheduler::add(uint32_t warp, uint64_t age) {
@@ -19,55 +20,63 @@ void Scheduler::add(uint32_t warp, uint64_t age) {
 }
 
 void Scheduler::remove(uint32_t warp) {
+  operands_.set(warp, kNever);
   resident_ &= ~(uint64_t{1} << warp);
   wake();
 }
 
-uint64_t Scheduler::find_ready(Cycle now, const Doors& doors) {
-  Cycle next = kNever;
-  Stall reason = Stall::NoWarp;
-  uint64_t free = 0;
-  // The loop has no branches, because the warps that wait are others in every cycle.
-  for (uint64_t rest = resident_; rest; rest &= rest - 1) {
-    const auto i = size_t(std::countr_zero(rest));
-    const bool waits = ready_at_[i] > now;
-    const Cycle until = waits ? ready_at_[i] : pipe_free_[size_t(pipe_[i])];
-    const Stall why = waits ? wait_[i] : Stall::MathThrottle;
-    const bool blocked = until > now;
-    next = std::min(next, blocked ? until : kNever);
-    reason = std::min(reason, blocked ? why : Stall::NoWarp);
-    free |= uint64_t{!blocked} << i;
-  }
-  const uint64_t at_lsu = free & needs_lsu_, at_rt = free & needs_rt_, at_tex = free & needs_tex_;
-  const bool lsu_full = at_lsu && !doors.lsu.can_take(index_),
-             tex_full = at_tex && !doors.lsu.can_take(index_, true);
-  watches_lsu_ = lsu_full || tex_full;
-  watches_rt_ = at_rt && !doors.rt.can_accept();
+uint64_t Scheduler::leave_out_busy_pipes(uint64_t ready, Cycle now) const {
+  if (now >= pipes_free_) return ready;
+  uint64_t busy = 0;
+  for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe)
+    busy |= pipe_free_[pipe] > now ? needs_pipe_[pipe] : 0;
+  return ready & ~busy;
+}
+
+uint64_t Scheduler::leave_out_full_doors(uint64_t ready, const Doors& doors) {
+  const auto at = [&](Door door) { return ready & needs_door_[size_t(door)]; };
+  watches_lsu_ = watches_rt_ = false;
+  if (ready == at(Door::None)) return ready;
+  uint64_t full = 0;
+  if (at(Door::Lsu) && !doors.lsu.can_take(index_)) full |= at(Door::Lsu);
+  if (at(Door::Texture) && !doors.lsu.can_take(index_, true)) full |= at(Door::Texture);
+  watches_lsu_ = full != 0;
   lsu_vacated_ = doors.lsu.num_vacated();
-  if (lsu_full) {
-    free &= ~at_lsu;
-    reason = std::min(reason, Stall::LsuThrottle);
-  }
-  if (tex_full) {
-    free &= ~at_tex;
-    reason = std::min(reason, Stall::TexThrottle);
-  }
-  if (watches_rt_) {
-    free &= ~at_rt;
-    reason = std::min(reason, Stall::RtFull);
-  }
+  watches_rt_ = at(Door::RtUnit) && !doors.rt.can_accept();
+  if (watches_rt_) full |= at(Door::RtUnit);
+  return ready & ~full;
+}
+
+// Finds the reason of a cycle without issue, and when it ends. `waiting` are the warps without their
+// operands; `at_pipes` and `at_doors` are those in front of busy pipes and full doors.
+void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors) {
+  Cycle next = operands_.next();
+  Stall reason = Stall::NoWarp;
+  for (; waiting; waiting &= waiting - 1) reason = std::min(reason, wait_[size_t(std::countr_zero(waiting))]);
+  const auto blame = [&](uint64_t warps, Stall stall) {
+    if (warps) reason = std::min(reason, stall);
+  };
+  blame(at_pipes, Stall::MathThrottle);
+  blame(at_doors & needs_door_[size_t(Door::Lsu)], Stall::LsuThrottle);
+  blame(at_doors & needs_door_[size_t(Door::Texture)], Stall::TexThrottle);
+  blame(at_doors & needs_door_[size_t(Door::RtUnit)], Stall::RtFull);
+  for (size_t pipe = 0; at_pipes && pipe < size_t(kNumPipes); ++pipe)
+    if (at_pipes & needs_pipe_[pipe]) next = std::min(next, pipe_free_[pipe]);
   reason_ = reason;
   sleep_until_ = next;
-  return free;
+}
+
+uint64_t Scheduler::find_ready(Cycle now, const Doors& doors) {
+  operands_.advance(now);
+  const uint64_t operands = resident_ & ~operands_.missing();
+  const uint64_t piped = leave_out_busy_pipes(operands, now);
+  const uint64_t ready = leave_out_full_doors(piped, doors);
+  if (!ready || has_banks_) find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
+  return ready;
 }
 
 NextIssue Scheduler::next_of(uint32_t warp) const {
-  const auto needs = [warp](uint64_t warps) { return (warps >> warp & 1) != 0; };
-  const Door door = needs(needs_rt_)    ? Door::RtUnit
-                    : needs(needs_tex_) ? Door::Texture
-                    : needs(needs_lsu_) ? Door::Lsu
-                                        : Door::None;
-  return {ready_at_[warp], wait_[warp], pipe_[warp], door};
+  return {ready_at_[warp], wait_[warp], pipe_[warp], door_[warp]};
 }
 
 // Returns the reason that the scheduler would have if this warp were its only one.

@@ -12,6 +12,7 @@
 #include "core/issue_scheduler.h"
 #include "core/issue_table.h"
 #include "core/lsu.h"
+#include "core/operand_wheel.h"
 #include "core/params.h"
 #include "core/stall.h"
 #include "rtunit/rt_port.h"
@@ -19,7 +20,8 @@
 namespace glint::core {
 
 // Names the queue in front of a shared unit that a warp's next instruction has to enter.
-enum class Door : uint8_t { None, Lsu, Texture, RtUnit };
+enum class Door : uint8_t { None, Lsu, Texture, RtUnit, Count };
+inline constexpr int kNumDoors = int(Door::Count);
 
 // Says what the next instruction of a warp waits for, and where it goes.
 struct NextIssue {
@@ -70,17 +72,21 @@ class Scheduler {
   void add(uint32_t warp, uint64_t age);
   void remove(uint32_t warp);
   void set_next(uint32_t warp, const NextIssue& next) {
+    const uint64_t bit = uint64_t{1} << warp;
+    operands_.set(warp, next.ready_at);
     ready_at_[warp] = next.ready_at;
     wait_[warp] = next.wait;
+    needs_pipe_[size_t(pipe_[warp])] &= ~bit;
+    needs_pipe_[size_t(next.pipe)] |= bit;
     pipe_[warp] = next.pipe;
-    const uint64_t others = ~(uint64_t{1} << warp);
-    needs_lsu_ = (needs_lsu_ & others) | uint64_t{next.door == Door::Lsu} << warp;
-    needs_tex_ = (needs_tex_ & others) | uint64_t{next.door == Door::Texture} << warp;
-    needs_rt_ = (needs_rt_ & others) | uint64_t{next.door == Door::RtUnit} << warp;
+    needs_door_[size_t(door_[warp])] &= ~bit;
+    needs_door_[size_t(next.door)] |= bit;
+    door_[warp] = next.door;
     wake();
   }
   // Notes that the warp has ended and waits for its last accesses.
   void drain(uint32_t warp) {
+    operands_.set(warp, kNever);
     ready_at_[warp] = kNever;
     wait_[warp] = Stall::Drain;
   }
@@ -88,8 +94,9 @@ class Scheduler {
   void become_empty() { reason_ = Stall::NoWarp; }
 
   // Returns whether find_ready() may give another result than the last time.
-  bool is_awake(Cycle now, const Lsu& lsu) const {
-    return now >= sleep_until_ || watches_rt_ || (watches_lsu_ && lsu_vacated_ != lsu.num_vacated());
+  bool is_awake(Cycle now, const Doors& doors) const {
+    return now >= sleep_until_ || (watches_rt_ && doors.rt.can_accept()) ||
+           (watches_lsu_ && lsu_vacated_ != doors.lsu.num_vacated());
   }
   // Returns the warps that can issue now, as bits. When no bit is set, reason() says why, and the scheduler
   // sleeps.
@@ -117,7 +124,7 @@ class Scheduler {
     Cycle& busy = pipe_busy_[size_t(at)];
     const Cycle start = std::max(busy, now * kParts);
     busy = start + parts;
-    pipe_free_[size_t(at)] = start / kParts + 1;
+    pipes_free_ = std::max(pipes_free_, pipe_free_[size_t(at)] = start / kParts + 1);
     return start / kParts - now;
   }
   // Sends an instruction to a pipe that is free. Intervals that are not a whole number of cycles are kept on
@@ -127,7 +134,7 @@ class Scheduler {
     constexpr Cycle kParts = OpTime::kParts;
     Cycle& busy = pipe_busy_[size_t(at)];
     busy = (pipe_free_[size_t(at)] == now ? busy : now * kParts) + parts;
-    pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts;
+    pipes_free_ = std::max(pipes_free_, pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts);
   }
 
   uint32_t index() const { return index_; }
@@ -143,17 +150,24 @@ class Scheduler {
 
  private:
   void wake() { sleep_until_ = 0; }
+  uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) const;
+  uint64_t leave_out_full_doors(uint64_t ready, const Doors& doors);
+  void find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors);
   Stall reason_of(uint32_t warp, Cycle now, const Doors& doors) const;
 
-  // find_ready() scans these in almost every cycle of a core, so each field is an array over all warps.
+  // Each field of a warp is an array over all warps, or a bit of each of several words. find_ready() reads
+  // them in almost every cycle of a core.
   const uint32_t index_;
-  uint64_t resident_ = 0;  // bit i: warp i holds its slot
+  uint64_t resident_ = 0;                         // bit i: warp i holds its slot
+  OperandWheel operands_;                         // when the operands of each warp's next instruction come
+  std::array<uint64_t, kNumPipes> needs_pipe_{};  // bit i of an entry: warp i issues to that pipe next
+  std::array<uint64_t, kNumDoors> needs_door_{};  // bit i of an entry: warp i enters that door next
+  Cycle pipes_free_ = 0;                      // first cycle in which another instruction can go to any pipe
+  std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
   std::array<Cycle, kMaxWarpsPerScheduler> ready_at_{};
   std::array<Stall, kMaxWarpsPerScheduler> wait_{};
   std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
-  // Bit i of each tells whether the next instruction of warp i enters that door.
-  uint64_t needs_lsu_ = 0, needs_tex_ = 0, needs_rt_ = 0;
-  std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
+  std::array<Door, kMaxWarpsPerScheduler> door_{};
   std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
   std::array<Cycle, kNumPipes> pipe_busy_{};           // end of the pipe's work, in parts of a cycle
 
@@ -164,6 +178,7 @@ class Scheduler {
   Stall reason_ = Stall::NoWarp;
   std::unique_ptr<IssueScheduler> policy_;
   const bool has_latches_;  // Params::dispatch_latch
+  const bool has_banks_;    // Warps that find_ready() returns may be held back after all.
 };
 
 }  // namespace glint::core

@@ -25,16 +25,12 @@ class Scoreboard {
   };
 
   void reset() {
-    ready_.fill(0);
-    wait_.fill(Stall::RawFixed);
-    from_.fill(Pipe::Count);
-    readers_.fill(0);
+    entries_.fill({});
     held_.fill(0);
   }
   // Returns when all of `registers` are ready. It is not before `start`, which waits for `start.wait`.
   Ready ready(std::span<const uint16_t> registers, Ready start) const {
-    for (uint16_t r : registers)
-      if (ready_[r] > start.at) start = {ready_[r], wait_[r]};
+    for (uint16_t r : registers) start = later(start, {entries_[r].ready, entries_[r].wait});
     return start;
   }
   // Does the same when results reach other pipes `crossing` cycles later than their own and guards `guard`
@@ -44,13 +40,13 @@ class Scoreboard {
               Cycle guard, Cycle slack) const {
     const size_t guard_at = row.is_guarded ? size_t(row.num_uses - row.num_defs - 1) : registers.size();
     for (size_t i = 0; i < registers.size(); ++i) {
-      const uint16_t r = registers[i];
-      if (ready_[r] == 0) continue;
+      const Entry& entry = entries_[registers[i]];
+      if (entry.ready == 0) continue;
       const bool is_source = i < size_t(row.num_uses - row.num_defs);
-      const bool crosses = from_[r] != Pipe::Count && from_[r] != row.pipe && is_source;
-      const Cycle later = i == guard_at ? guard : crosses ? crossing : 0;
-      const Cycle at = ready_[r] == kNever ? kNever : before(ready_[r] + later, is_source ? 0 : slack);
-      if (at > start.at) start = {at, wait_[r]};
+      const bool crosses = entry.from != Pipe::Count && entry.from != row.pipe && is_source;
+      const Cycle delay = i == guard_at ? guard : crosses ? crossing : 0;
+      const Cycle at = entry.ready == kNever ? kNever : before(entry.ready + delay, is_source ? 0 : slack);
+      start = later(start, {at, entry.wait});
     }
     return start;
   }
@@ -59,27 +55,25 @@ class Scoreboard {
   Ready ready_in_order(std::span<const uint16_t> sources, std::span<const uint16_t> results, Ready start,
                        Cycle latency) const {
     start = ready(sources, start);
-    for (uint16_t r : results) {
-      const Cycle at = before(ready_[r], latency - 1);
-      if (at > start.at) start = {at, wait_[r]};
-    }
+    for (uint16_t r : results)
+      start = later(start, {before(entries_[r].ready, latency - 1), entries_[r].wait});
     return start;
   }
   // Returns when all of `registers` have been read by the instructions that hold them.
   Ready unread(std::span<const uint16_t> registers, Ready start) const {
     for (uint16_t r : registers) {
-      const Cycle at = readers_[r] ? kNever : held_[r];
-      if (at > start.at) start = {at, Stall::OperandRead};
+      const Cycle at = entries_[r].readers ? kNever : held_[r];
+      start = later(start, {at, Stall::OperandRead});
     }
     return start;
   }
   void hold(std::span<const uint16_t> registers) {
-    for (uint16_t r : registers) ++readers_[r];
+    for (uint16_t r : registers) ++entries_[r].readers;
   }
   // Notes that an instruction which holds the registers reads them until `end`.
   void read(std::span<const uint16_t> registers, Cycle end) {
     for (uint16_t r : registers) {
-      --readers_[r];
+      --entries_[r].readers;
       held_[r] = std::max(held_[r], end);
     }
   }
@@ -87,22 +81,35 @@ class Scoreboard {
   // pipes at the same time.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
     for (uint16_t r : registers) {
-      ready_[r] = value.at;
-      wait_[r] = value.wait;
-      from_[r] = from;
+      Entry& entry = entries_[r];
+      entry.ready = value.at;
+      entry.wait = value.wait;
+      entry.from = from;
     }
   }
 
  private:
+  // Returns the later of two, the first if they are equal. There is no branch, because which of an
+  // instruction's registers comes last cannot be foreseen.
+  static Ready later(const Ready& first, const Ready& second) {
+    const bool takes_second = second.at > first.at;
+    return {takes_second ? second.at : first.at, takes_second ? second.wait : first.wait};
+  }
   static Cycle before(Cycle at, Cycle cycles) {
     return at == kNever ? kNever : std::max(at, cycles) - cycles;
   }
 
-  std::array<Cycle, kScoreboardEntries> ready_{};
-  std::array<Stall, kScoreboardEntries> wait_{};
-  std::array<Pipe, kScoreboardEntries> from_{};
-  std::array<uint16_t, kScoreboardEntries> readers_{};  // memory instructions that have not read it yet
-  std::array<Cycle, kScoreboardEntries> held_{};        // held until then by instructions that are reading it
+  // What is needed of a register lies together, because an instruction looks at few registers.
+  struct Entry {
+    Cycle ready = 0;
+    Stall wait = Stall::RawFixed;
+    Pipe from = Pipe::Count;
+    uint16_t readers = 0;  // memory instructions that have not read the register yet
+  };
+  static_assert(sizeof(Entry) == 16);
+
+  std::array<Entry, kScoreboardEntries> entries_{};
+  std::array<Cycle, kScoreboardEntries> held_{};  // held until then by instructions that are reading it
 };
 
 }  // namespace glint::core

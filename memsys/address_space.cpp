@@ -6,6 +6,8 @@
 #include <new>
 
 #include "base/check.h"
+#include "base/diagnostics.h"
+#include "memsys/request.h"
 
 namespace glint::mem {
 namespace {
@@ -46,6 +48,12 @@ Address AddressSpace::allocate(std::string name, uint64_t bytes) {
 Address AddressSpace::reserve(uint64_t bytes) {
   const Address first = next_physical_;
   next_physical_ += (bytes + kPhysicalAlignment - 1) / kPhysicalAlignment * kPhysicalAlignment;
+  if (next_physical_ >= kMaxPhysicalBytes)
+    throw UserError(
+        {},
+        fmt::format("the program and the machine need {} GiB of simulated memory, and there are {}",
+                    next_physical_ >> 30, kMaxPhysicalBytes >> 30),
+        "use smaller buffers, less local memory or fewer cores");
   return first;
 }
 

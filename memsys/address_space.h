@@ -37,6 +37,7 @@ class AddressSpace {
   // consecutive allocation numbers.
   Address allocate(std::string name, uint64_t bytes);
   // Reserves physical bytes for the machine, which no program can address. Returns the address of the first.
+  // Throws UserError when physical memory becomes larger than kMaxPhysicalBytes.
   Address reserve(uint64_t bytes);
 
   // Returns a host pointer to [address, address + bytes), or null when any byte lies outside an allocation.

@@ -26,6 +26,8 @@ class L1Port {
   virtual ~L1Port() = default;
   virtual bool access(Cycle now, Client client, const Request& request) = 0;
   virtual std::optional<Token> pop(Cycle now, Client client) = 0;
+  // Returns whether pop() has a token to give back.
+  virtual bool has_answer(Cycle now, Client client) const = 0;
   virtual void tick(Cycle now) = 0;
   virtual Cycle next_event(Cycle now) const = 0;  // is kNever when nothing is in flight
   virtual uint32_t line_bytes() const = 0;

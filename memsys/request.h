@@ -49,6 +49,14 @@ constexpr bool passes_l1(Traffic t) {
 
 inline constexpr uint32_t kSectorBytes = 32;  // unit of transfer between all levels (Volta and later)
 
+// Caches know a line by the number of its first sector, which has 32 bits. It bounds physical memory
+// (AddressSpace::reserve()).
+inline constexpr uint32_t kNoLine = ~0u;
+inline constexpr Address kMaxPhysicalBytes = Address{kSectorBytes} << 32;
+constexpr uint32_t line_key(Address line) {
+  return uint32_t(line / kSectorBytes);
+}
+
 using Token = uint32_t;  // name that the requester gives a request, which comes back unchanged
 
 // Bit i stands for the i-th of 32 equal parts of a line; in a line of 128 bytes the parts are words of 4

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/stats.h"
-#include "memsys/cache/line_table.h"
+#include "memsys/cache/line_set.h"
 #include "memsys/request.h"
 
 namespace glint::mem {
@@ -48,7 +48,7 @@ struct CacheStats {
                            "Number of lines that were replaced, clean or dirty."};
 
   // Counts a read that the cache took. `seen` holds all lines that the cache has held or fetched.
-  void count_read(Traffic traffic, uint8_t missing, uint8_t fetched, Address line, LineTable& seen) {
+  void count_read(Traffic traffic, uint8_t missing, uint8_t fetched, Address line, LineSet& seen) {
     reads.add(traffic);
     if (missing == 0) return hits.add(traffic);
     if (fetched == 0) return pending_hits.add(traffic);

@@ -23,6 +23,7 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, C
       tags_(cache_shape(params_.size, params_.ways, line_bytes_), params_.replacement),
       mshr_(params_.mshr_entries, params_.mshr_merges),
       passing_(params_.mshr_entries),
+      seen_(line_bytes_),
       miss_queue_(params_.miss_queue) {
 }
 

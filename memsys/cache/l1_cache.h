@@ -79,6 +79,11 @@ class L1Cache final : public L1Port {
 
   bool access(Cycle now, Client client, const Request& request) override;
   std::optional<Token> pop(Cycle now, Client client) override;
+  bool has_answer(Cycle now, Client client) const override {
+    const Answers& a = answers_[size_t(client)];
+    return (!a.hits.empty() && a.hits.front().ready <= now) ||
+           (!a.fills.empty() && a.fills.front().ready <= now);
+  }
   void tick(Cycle now) override;
   Cycle next_event(Cycle now) const override;
   uint32_t line_bytes() const override { return line_bytes_; }
@@ -155,7 +160,7 @@ class L1Cache final : public L1Port {
   Mshr<Waiter> mshr_;
   // Tells for each MSHR whether its line passes the cache and is not kept (instructions, constants).
   std::vector<uint8_t> passing_;
-  LineTable seen_;
+  LineSet seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;
   Cycle port_cycle_ = kNever;  // cycle to which accesses_ and busy_banks_ belong

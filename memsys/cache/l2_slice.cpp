@@ -33,6 +33,7 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
       tags_(cache_shape(params_.slice_size, params_.ways, line_bytes_), params_.replacement),
       words_(params_.write_masks ? params_.slice_size / line_bytes_ : 0),
       mshr_(params_.mshr_entries, params_.mshr_merges),
+      seen_(line_bytes_),
       to_dram_(params_.dram_queue) {
 }
 

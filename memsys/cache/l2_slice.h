@@ -138,7 +138,7 @@ class L2Slice {
   TagArray tags_;
   std::vector<WordMask> words_;  // words written in sectors that are dirty and not valid, by slot
   Mshr<Waiter> mshr_;
-  LineTable seen_;
+  LineSet seen_;
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
   Cycle busy_until_ = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "memsys/request.h"
 
 namespace glint::mem {
 
@@ -21,53 +22,47 @@ class LineTable {
   explicit LineTable(size_t expected = 16) { resize(std::bit_ceil(expected * 2 < 16 ? 16 : expected * 2)); }
 
   uint32_t find(Address line) const {
-    for (size_t i = home(line);; i = (i + 1) & mask_) {
-      if (cells_[i].line == line) return cells_[i].value;
-      if (cells_[i].line == kEmpty) return kNone;
+    const uint32_t key = line_key(line);
+    for (size_t i = home(key);; i = (i + 1) & mask_) {
+      if (cells_[i].key == key) return cells_[i].value;
+      if (cells_[i].key == kNoLine) return kNone;
     }
   }
   // Inserts `line`, which must be absent.
   void insert(Address line, uint32_t value) {
     if (2 * (size_ + 1) > cells_.size()) grow();
-    put({line, value});
+    put({line_key(line), value});
     ++size_;
   }
   // Removes `line`, which must be present.
   void erase(Address line) {
-    size_t hole = home(line);
-    while (cells_[hole].line != line) hole = (hole + 1) & mask_;
-    for (size_t i = (hole + 1) & mask_; cells_[i].line != kEmpty; i = (i + 1) & mask_) {
+    const uint32_t key = line_key(line);
+    size_t hole = home(key);
+    while (cells_[hole].key != key) hole = (hole + 1) & mask_;
+    for (size_t i = (hole + 1) & mask_; cells_[i].key != kNoLine; i = (i + 1) & mask_) {
       // The cell at i may move to the hole when its home does not lie between them.
-      if (((i - home(cells_[i].line)) & mask_) >= ((i - hole) & mask_)) cells_[hole] = cells_[i], hole = i;
+      if (((i - home(cells_[i].key)) & mask_) >= ((i - hole) & mask_)) cells_[hole] = cells_[i], hole = i;
     }
-    cells_[hole].line = kEmpty;
+    cells_[hole].key = kNoLine;
     --size_;
-  }
-  // Inserts `line` if it is absent. Returns whether it was absent.
-  bool insert_if_new(Address line) {
-    if (find(line) != kNone) return false;
-    insert(line, 0);
-    return true;
   }
   size_t size() const { return size_; }
 
  private:
-  static constexpr Address kEmpty = ~Address{0};
   struct Cell {
-    Address line;
-    uint32_t value;
+    uint32_t key, value;
   };
 
-  // Returns the cell at which the search for `line` begins. Fibonacci hashing takes the upper bits of a
+  // Returns the cell at which the search for a key begins. Fibonacci hashing takes the upper bits of a
   // product with 2^64 / golden ratio (Knuth, TAOCP 3, 6.4).
-  size_t home(Address line) const { return size_t((line * 0x9e37'79b9'7f4a'7c15ull) >> shift_); }
+  size_t home(uint32_t key) const { return size_t((key * 0x9e37'79b9'7f4a'7c15ull) >> shift_); }
   void put(Cell cell) {
-    size_t i = home(cell.line);
-    while (cells_[i].line != kEmpty) i = (i + 1) & mask_;
+    size_t i = home(cell.key);
+    while (cells_[i].key != kNoLine) i = (i + 1) & mask_;
     cells_[i] = cell;
   }
   void resize(size_t cells) {
-    cells_.assign(cells, {kEmpty, 0});
+    cells_.assign(cells, {kNoLine, 0});
     mask_ = cells - 1;
     shift_ = 64 - std::countr_zero(cells);
   }
@@ -75,7 +70,7 @@ class LineTable {
     std::vector<Cell> old = std::move(cells_);
     resize(old.size() * 2);
     for (const Cell& cell : old)
-      if (cell.line != kEmpty) put(cell);
+      if (cell.key != kNoLine) put(cell);
   }
 
   std::vector<Cell> cells_;

@@ -17,7 +17,9 @@ CacheShape cache_shape(uint64_t bytes, uint32_t ways, uint32_t line_bytes) {
 TagArray::TagArray(const CacheShape& shape, const PolicyChoice<Replacement>& replacement)
     : shape_(shape),
       lines_(size_t{shape.sets} * shape.ways),
-      index_(lines_.size()),
+      has_index_(shape.ways > kMaxWaysSearched),
+      index_(has_index_ ? lines_.size() : 0),
+      keys_(has_index_ ? 0 : lines_.size(), kNoLine),
       replacement_(replacement.make({shape.sets, shape.ways})) {
 }
 

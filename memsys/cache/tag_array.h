@@ -31,7 +31,7 @@ class TagArray {
 
   TagArray(const CacheShape& shape, const PolicyChoice<Replacement>& replacement);
 
-  uint32_t find(Address address) const { return index_.find(address); }
+  uint32_t find(Address address) const { return has_index_ ? index_.find(address) : find_in_set(address); }
   Line& line(uint32_t slot) { return lines_[slot]; }
   const Line& line(uint32_t slot) const { return lines_[slot]; }
 
@@ -47,10 +47,10 @@ class TagArray {
   Line& insert(Address address) {
     const uint32_t slot = victim_of(address);
     Line& line = lines_[slot];
-    if (line.used()) index_.erase(line.address);
+    if (line.used()) leave(slot);
     line.address = address;
     line.valid = line.dirty = 0;
-    index_.insert(address, slot);
+    enter(slot);
     replacement_->filled(slot);
     return line;
   }
@@ -66,7 +66,7 @@ class TagArray {
     line.valid &= uint8_t(~sectors);
     line.dirty &= uint8_t(~sectors);
     if (line.used()) return;
-    index_.erase(line.address);
+    leave(slot);
     replacement_->emptied(slot);
   }
 
@@ -83,9 +83,36 @@ class TagArray {
     return uint32_t((hash >> 32) % shape_.sets);
   }
 
+  // Returns the slot of a line among those of its set. The loop has no branches, so that the host compares
+  // several keys at a time.
+  uint32_t find_in_set(Address address) const {
+    const uint32_t key = line_key(address), first = set_of(address) * shape_.ways;
+    const uint32_t* keys = keys_.data() + first;
+    uint32_t way = kNone;
+    for (uint32_t i = 0; i < shape_.ways; ++i) way = keys[i] == key ? i : way;
+    return way == kNone ? kNone : first + way;
+  }
+  void enter(uint32_t slot) {
+    if (has_index_)
+      index_.insert(lines_[slot].address, slot);
+    else
+      keys_[slot] = line_key(lines_[slot].address);
+  }
+  void leave(uint32_t slot) {
+    if (has_index_)
+      index_.erase(lines_[slot].address);
+    else
+      keys_[slot] = kNoLine;
+  }
+
+  // Choice: sets of up to this many ways are searched way by way.
+  static constexpr uint32_t kMaxWaysSearched = 32;
+
   CacheShape shape_;
   std::vector<Line> lines_;
+  const bool has_index_;  // Sets are large, so lines are found by index_. Otherwise keys_ are searched.
   LineTable index_;
+  std::vector<uint32_t> keys_;  // by slot
   std::unique_ptr<Replacement> replacement_;
 };
 

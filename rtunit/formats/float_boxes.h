@@ -43,15 +43,14 @@ struct FloatBoxes {
         clip_slab(near_plane[i], far_plane[i], space.origin[a], space.inverse_direction[a], t_near[i],
                   t_far[i]);
     }
+    for (int i = 0; i < kWidth; ++i) clip_to_ray(t_min, t_max, t_near[i], t_far[i]);
     int hits = 0;
+    // A child is written in any case, and kept if it is entered: a branch could not be foreseen.
     for (int i = 0; i < kWidth && node.child[i] != kNone; ++i) {
       ++box_tests;
-      float enter = widen_near(t_near[i]), leave = widen_far(t_far[i]);
-      enter = enter > t_min ? enter : t_min;
-      leave = leave < t_max ? leave : t_max;
-      if (!(enter <= leave)) continue;
-      t_enter[hits] = enter;
-      child[hits++] = node.child[i];
+      t_enter[hits] = t_near[i];
+      child[hits] = node.child[i];
+      hits += t_near[i] <= t_far[i];
     }
     return hits;
   }

@@ -43,18 +43,16 @@ struct QuantisedBoxes {
         clip_slab(Grid::plane(node.origin[a], near_q[i], step), Grid::plane(node.origin[a], far_q[i], step),
                   space.origin[a], space.inverse_direction[a], t_near[i], t_far[i]);
     }
+    for (int i = 0; i < kPlanes; ++i) clip_to_ray(t_min, t_max, t_near[i], t_far[i]);
     const int count = num_children(node);
     box_tests += uint32_t(count);
     int hits = 0;
     typename Format::References references(node);
+    // A child is written in any case, and kept if it is entered: a branch could not be foreseen.
     for (int i = 0; i < count; ++i) {
-      const NodeRef reference = references.next(i);
-      float enter = widen_near(t_near[i]), leave = widen_far(t_far[i]);
-      enter = enter > t_min ? enter : t_min;
-      leave = leave < t_max ? leave : t_max;
-      if (!(enter <= leave)) continue;
-      t_enter[hits] = enter;
-      child[hits++] = reference;
+      t_enter[hits] = t_near[i];
+      child[hits] = references.next(i);
+      hits += t_near[i] <= t_far[i];
     }
     return hits;
   }

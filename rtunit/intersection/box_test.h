@@ -29,4 +29,11 @@ inline float widen_far(float t) {
   return t * (t > 0 ? kSlabGrow : kSlabShrink);
 }
 
+// Widens the interval that was clipped to the slabs, and clips it to the ray's own.
+inline void clip_to_ray(float t_min, float t_max, float& t_near, float& t_far) {
+  const float enter = widen_near(t_near), leave = widen_far(t_far);
+  t_near = enter > t_min ? enter : t_min;
+  t_far = leave < t_max ? leave : t_max;
+}
+
 }  // namespace glint::rt

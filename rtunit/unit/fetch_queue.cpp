@@ -52,7 +52,7 @@ Cycle FetchQueue::next_event(Cycle now) const {
 // The policy picks the warp. Model: among its lanes that want a read, the one with the lowest number is
 // served first.
 bool FetchQueue::choose(Cycle now) {
-  if (is_full()) return false;
+  if (is_full() || !buffer_.has_wanting_lanes()) return false;
   bool any = false;
   for (uint32_t i = 0; i < buffer_.size(); ++i) {
     const BufferSlot& slot = buffer_[i];
@@ -95,7 +95,7 @@ uint32_t FetchQueue::add(uint32_t slot, LaneMask lanes, const Read& read) {
   const uint32_t index = free_.back();
   free_.pop_back();
   reads_[index] = {slot, lanes, read};
-  buffer_[slot].wanting &= ~lanes;
+  buffer_.serve(slot, lanes);
   return index;
 }
 

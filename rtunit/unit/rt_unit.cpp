@@ -26,6 +26,7 @@ uint64_t RtUnit::stack_bytes_per_warp(const Params& params) {
 
 RtUnit::RtUnit(const Params& params, const Context& context)
     : requests_per_cycle_(params.requests_per_cycle),
+      l1_(context.l1),
       stats_(context.stats),
       buffer_(params, stats_),
       walk_(params, context.memory, buffer_, stats_),
@@ -70,13 +71,13 @@ Part& RtUnit::add(Args&&... args) {
 
 void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) {
   GLINT_CHECK(can_accept() && mask != 0, "warp {} submitted to a full RT unit or without rays", warp_slot);
-  has_news_ = true;
+  due_ = 0;
   const uint32_t slot = buffer_.admit(now, warp_slot, mask, states);
   for_each_lane(mask, [&](int lane) { walk_.start(slot, lane, now); });
 }
 
 void RtUnit::tick(Cycle now) {
-  has_news_ = false;
+  if (now < due_ && !l1_.has_answer(now, mem::Client::RtUnit)) return;
   account_.skip_to(now);
   buffer_.retire(now);
   for (const auto& step : before_tests_) step(now);
@@ -86,6 +87,7 @@ void RtUnit::tick(Cycle now) {
   const Stall reason = send_requests(now);
   for (const auto& step : after_requests_) step(now);
   account_.account(now, reason, idle_reason(), {buffer_.num_resident(), buffer_.num_rays()});
+  due_ = find_due(now);
 }
 
 // Passes what has arrived to the pipelines. A part of a stack needs no test.
@@ -122,8 +124,8 @@ RequestSource* RtUnit::next_source(Cycle now) {
   return fetches_.choose(now) ? &fetches_ : nullptr;
 }
 
-Cycle RtUnit::next_event(Cycle now) const {
-  if (has_news_ || buffer_.has_leaving_warps()) return now + 1;
+Cycle RtUnit::find_due(Cycle now) const {
+  if (buffer_.has_leaving_warps()) return now + 1;
   Cycle next = std::min(fetches_.next_event(now), pipelines_.next_event());
   for (const RequestSource* source : sources_) next = std::min(next, source->next_event(now));
   return next == kNever ? next : std::max(next, now + 1);

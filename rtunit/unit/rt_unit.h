@@ -1,6 +1,7 @@
 // Models the RT unit of a core: the rays of its warps fetch nodes through the L1 and test them in pipelines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -52,7 +53,7 @@ class RtUnit final : public RtPort {
   std::optional<uint32_t> pop_completion(Cycle) override { return buffer_.pop_completion(); }
   void tick(Cycle now) override;
   // The L1's answers are new input, and the L1's next_event() tells of them.
-  Cycle next_event(Cycle now) const override;
+  Cycle next_event(Cycle now) const override { return due_ == kNever ? kNever : std::max(due_, now + 1); }
 
   std::string describe() const override;
 
@@ -82,8 +83,10 @@ class RtUnit final : public RtPort {
   RequestSource* next_source(Cycle now);
   bool has_reads_waiting() const;
   Stall idle_reason() const;
+  Cycle find_due(Cycle now) const;
 
   const uint32_t requests_per_cycle_;
+  const mem::L1Port& l1_;
   RtStats stats_;
   WarpBuffer buffer_;
   RayWalk walk_;
@@ -93,7 +96,9 @@ class RtUnit final : public RtPort {
   std::vector<std::shared_ptr<void>> parts_;  // owns the parts that not every configuration has
   std::vector<RequestSource*> sources_;       // the sources among these parts, by priority
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
-  bool has_news_ = false;  // A warp was submitted since the last tick.
+  // This is the first cycle with work of the unit's own, unless answers of the L1 come before. It is 0 when a
+  // warp was submitted since the last tick.
+  Cycle due_ = kNever;
 };
 
 }  // namespace glint::rt

@@ -39,6 +39,7 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
 void WarpBuffer::want(uint32_t slot, int lane, const Read& read) {
   slots_[slot].read[size_t(lane)] = read;
   slots_[slot].wanting |= LaneMask{1} << lane;
+  wanting_ |= uint64_t{1} << slot;
 }
 
 void WarpBuffer::stop(uint32_t slot, int lane, Cycle now) {
@@ -76,10 +77,6 @@ std::optional<uint32_t> WarpBuffer::pop_completion() {
   const uint32_t warp_slot = completions_.front();
   completions_.pop();
   return warp_slot;
-}
-
-bool WarpBuffer::has_wanting_lanes() const {
-  return std::any_of(slots_.begin(), slots_.end(), [](const BufferSlot& s) { return s.wanting != 0; });
 }
 
 }  // namespace glint::rt

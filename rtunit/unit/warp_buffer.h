@@ -65,6 +65,11 @@ class WarpBuffer {
   uint32_t size() const { return uint32_t(slots_.size()); }
 
   void want(uint32_t slot, int lane, const Read& read);
+  // Notes that the lanes' reads are under way.
+  void serve(uint32_t slot, LaneMask lanes) {
+    slots_[slot].wanting &= ~lanes;
+    if (slots_[slot].wanting == 0) wanting_ &= ~(uint64_t{1} << slot);
+  }
   void stop(uint32_t slot, int lane, Cycle now);
   void add_writes(uint32_t slot, uint32_t count) { slots_[slot].unsent_writes += count; }
   void write_sent(uint32_t slot, Cycle now);
@@ -75,7 +80,7 @@ class WarpBuffer {
   std::optional<uint32_t> pop_completion();
 
   bool has_leaving_warps() const { return !finished_.empty() || !completions_.empty(); }
-  bool has_wanting_lanes() const;
+  bool has_wanting_lanes() const { return wanting_ != 0; }
   uint32_t num_resident() const { return num_resident_; }
   uint32_t num_rays() const { return num_rays_; }  // rays that have not stopped
   Probe<WarpMoved>& warp_moved() { return warp_moved_; }
@@ -85,6 +90,7 @@ class WarpBuffer {
   RtStats& stats_;
   Probe<WarpMoved> warp_moved_;
   std::vector<BufferSlot> slots_;
+  uint64_t wanting_ = 0;  // bit i: some lane of slot i wants a read
   std::vector<WarpExit*> exits_;
   mem::Ring<uint32_t> finished_;     // slots whose warps have passed all exits
   mem::Ring<uint32_t> completions_;  // the core's warp slots, to be given back

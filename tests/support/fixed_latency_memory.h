@@ -41,6 +41,10 @@ class FixedLatencyMemory final : public L1Port {
     queue.pop_front();
     return token;
   }
+  bool has_answer(Cycle now, Client client) const override {
+    const std::deque<Answer>& queue = ready_[size_t(client)];
+    return !queue.empty() && queue.front().at <= now;
+  }
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override {
     Cycle next = kNever;

@@ -193,6 +193,7 @@ TEST_CASE("a refused request is tried again until it is taken, and the cycles ar
       return now % 8 == 0 && inner.access(now, client, r);
     }
     std::optional<mem::Token> pop(Cycle now, mem::Client client) override { return inner.pop(now, client); }
+    bool has_answer(Cycle now, mem::Client client) const override { return inner.has_answer(now, client); }
     void tick(Cycle) override {}
     Cycle next_event(Cycle now) const override { return inner.next_event(now); }
     uint32_t line_bytes() const override { return 128; }
@@ -238,6 +239,7 @@ TEST_CASE("an idle unit has no next event") {
   RtUnit unit({}, {scene.memory, l1});
   CHECK(unit.next_event(0) == kNever);
   unit.tick(100);
+  unit.finish(101);
   CHECK(unit.stats().cycles.count(Stall::Idle) == 101);
 }
 

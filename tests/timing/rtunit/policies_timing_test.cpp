@@ -41,6 +41,7 @@ class TimedMemory final : public mem::L1Port {
     open -= token.has_value();
     return token;
   }
+  bool has_answer(Cycle now, mem::Client client) const override { return inner.has_answer(now, client); }
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override { return inner.next_event(now); }
   uint32_t line_bytes() const override { return 128; }

@@ -21,6 +21,7 @@ class HalfTimeMemory final : public mem::L1Port {
     return now % 2 == 0 && memory_.access(now, client, request);
   }
   std::optional<mem::Token> pop(Cycle now, mem::Client client) override { return memory_.pop(now, client); }
+  bool has_answer(Cycle now, mem::Client client) const override { return memory_.has_answer(now, client); }
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override { return memory_.next_event(now); }
   uint32_t line_bytes() const override { return memory_.line_bytes(); }
