@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <mutex>
 #include <unistd.h>
 #include <vector>
 
@@ -111,7 +112,7 @@ void FileStore::store(const std::string& given, std::string_view value) {
   fs::create_directories(options_.folder, failed);
   const std::string path = file_of(given), key = options_.build + '\0' + given;
   const std::string temporary =
-      fmt::format("{}.{}.{:x}", path, ::getpid(), reinterpret_cast<uintptr_t>(this));
+      fmt::format("{}.{}.{:x}.{}", path, ::getpid(), reinterpret_cast<uintptr_t>(this), num_temporaries_++);
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     const Header header = header_of(key, value);
@@ -132,6 +133,7 @@ void FileStore::store(const std::string& given, std::string_view value) {
 // Limits the size of the folder. The folder is only searched from time to time, so it may exceed its limit by
 // an eighth for each process.
 void FileStore::sweep(uint64_t written) {
+  const std::lock_guard lock(sweeping_);
   written_bytes_ += written;
   if (swept_ && written_bytes_ < options_.max_bytes / 8) return;
   swept_ = true;

@@ -2,7 +2,9 @@
 // longer than a process lives.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,9 +18,9 @@ namespace glint {
 uint64_t content_hash(std::string_view bytes, uint64_t seed = 0xcbf2'9ce4'8422'2325);
 
 // Keeps values in a folder. Any number of processes may use one folder at a time, because a file appears
-// whole, by renaming. A file that is damaged, or that belongs to another key with the same hash, counts as
-// absent and is written again. A value that cannot be written causes no error, only more work next time. Only
-// one thread at a time may use a FileStore.
+// whole, by renaming, and any number of threads may use one store. A file that is damaged, or that belongs to
+// another key with the same hash, counts as absent and is written again. A value that cannot be written
+// causes no error, only more work next time.
 class FileStore {
  public:
   struct Options {
@@ -40,7 +42,10 @@ class FileStore {
   void sweep(uint64_t written);
 
   const Options options_;
-  uint64_t written_bytes_ = 0, damaged_ = 0;
+  std::atomic<uint64_t> damaged_ = 0;
+  std::atomic<uint64_t> num_temporaries_ = 0;  // tells the temporary files of threads apart
+  std::mutex sweeping_;
+  uint64_t written_bytes_ = 0;
   bool swept_ = false;
 };
 

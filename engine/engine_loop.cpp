@@ -6,15 +6,14 @@
 #include <chrono>
 #include <cstdint>
 #include <fmt/format.h>
-#include <thread>
 
 #include "base/diagnostics.h"
+#include "base/ordered_work.h"
 
 namespace glint {
 
 uint32_t EngineLoop::num_threads(uint32_t threads, size_t cells) {
-  const uint32_t wanted = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
-  return std::min(wanted, uint32_t(std::max<size_t>(cells, 1)));
+  return std::min(host_threads(threads), uint32_t(std::max<size_t>(cells, 1)));
 }
 
 Cycle EngineLoop::run(const Between& between, Cycle look_at) {

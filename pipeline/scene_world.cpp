@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "base/check.h"
+#include "base/ordered_work.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/software_traversal.h"
 #include "pipeline/structure_cache.h"
@@ -44,6 +46,25 @@ rt::Bounds sphere_bounds(const Model& model) {
     box.high[axis] = model.center[axis] + model.radius;
   }
   return box;
+}
+
+// Describes a model to the builder. `box` becomes the bounds of a model that is procedural.
+rt::BottomLevel bottom_level_of(const Model& model, rt::Bounds& box) {
+  rt::Geometry geometry;
+  if (model.is_procedural()) {
+    box = sphere_bounds(model);
+    geometry.aabbs = {&box, 1};
+    geometry.opaque = true;
+  } else {
+    geometry.positions = std::as_bytes(std::span(model.vertices));
+    geometry.stride = sizeof(scenes::Vertex);
+    geometry.indices = model.indices;
+    geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
+    geometry.no_duplicate_any_hit = true;
+  }
+  rt::BottomLevel level;
+  level.geometries.push_back(geometry);
+  return level;
 }
 
 }  // namespace
@@ -160,33 +181,32 @@ void SceneWorld::upload_images(const RenderJob& job) {
   bind(kTextures, first, world.images.size() - first);
 }
 
-void SceneWorld::build_structures(const RenderJob& job) {
+// Builds the bottom levels on all threads, and places them in the order of the models, so that addresses do
+// not depend on threads.
+std::vector<rt::StructureInfo> SceneWorld::build_bottoms(const RenderJob& job) {
+  const std::vector<Model>& models = job.scene.models;
+  const auto name_of = [](const Model& model) { return "bottom level " + model.name; };
   std::vector<rt::StructureInfo> bottoms;
-  for (const Model& model : job.scene.models) {
-    rt::BottomLevel level;
-    rt::Geometry geometry;
-    const rt::Bounds box = sphere_bounds(model);
-    if (model.is_procedural()) {
-      geometry.aabbs = {&box, 1};
-      geometry.opaque = true;
-      ++structures.procedurals;
-    } else {
-      geometry.positions = std::as_bytes(std::span(model.vertices));
-      geometry.stride = sizeof(scenes::Vertex);
-      geometry.indices = model.indices;
-      geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
-      geometry.no_duplicate_any_hit = true;
-      structures.triangles += model.indices.size() / 3;
-    }
-    level.geometries.push_back(geometry);
-    const std::string name = "bottom level " + model.name;
-    const rt::EncodedBottom bottom = job.structure_cache
-                                         ? job.structure_cache->encode(name, level, job.gpu.bvh)
-                                         : rt::encode_bottom(name, level, job.gpu.bvh);
-    bottoms.push_back(rt::place(memory_, name, bottom));
-    structures.bytes += bottoms.back().bytes;
-    structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
-  }
+  OrderedWork<rt::EncodedBottom> work(models.size(), host_threads(job.threads));
+  work.run(
+      [&](size_t i) {
+        rt::Bounds box;
+        const rt::BottomLevel level = bottom_level_of(models[i], box);
+        return job.structure_cache ? job.structure_cache->encode(name_of(models[i]), level, job.gpu.bvh)
+                                   : rt::encode_bottom(name_of(models[i]), level, job.gpu.bvh);
+      },
+      [&](size_t i, rt::EncodedBottom&& bottom) {
+        bottoms.push_back(rt::place(memory_, name_of(models[i]), bottom));
+        structures.procedurals += models[i].is_procedural();
+        structures.triangles += models[i].is_procedural() ? 0 : models[i].indices.size() / 3;
+        structures.bytes += bottoms.back().bytes;
+        structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
+      });
+  return bottoms;
+}
+
+void SceneWorld::build_structures(const RenderJob& job) {
+  const std::vector<rt::StructureInfo> bottoms = build_bottoms(job);
   std::vector<rt::Instance> instances;
   for (const scenes::Instance& placed : scenes::instances_of(job.scene)) {
     rt::Instance instance;

@@ -38,6 +38,7 @@ class SceneWorld {
  private:
   void upload_geometry(const scenes::Scene& scene);
   void upload_images(const RenderJob& job);
+  std::vector<rt::StructureInfo> build_bottoms(const RenderJob& job);
   void build_structures(const RenderJob& job);
   void link_shaders(const RenderJob& job);
   void bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count);

@@ -50,24 +50,42 @@ static_assert(std::is_trivially_copyable_v<rt::StructureInfo>);
 rt::EncodedBottom StructureCache::encode(const std::string& name, const rt::BottomLevel& input,
                                          const rt::BuildOptions& options) {
   if (primitives_of(input) < least_primitives_) {
-    ++counts_.built;
+    count(&Counts::built);
     return rt::encode_bottom(name, input, options);
   }
   const std::string key = key_of(input, options);
+  const Turn turn(*this, key);
   rt::EncodedBottom out;
   if (const std::optional<std::string> value = files_.find(key); value && value->size() >= sizeof out.info) {
     std::memcpy(&out.info, value->data(), sizeof out.info);
     out.bytes.resize(value->size() - sizeof out.info);
     std::memcpy(out.bytes.data(), value->data() + sizeof out.info, out.bytes.size());
-    ++counts_.found;
+    count(&Counts::found);
     return out;
   }
   out = rt::encode_bottom(name, input, options);
   std::string value(reinterpret_cast<const char*>(&out.info), sizeof out.info);
   value.append(reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size());
   files_.store(key, value);
-  ++counts_.built;
+  count(&Counts::built);
   return out;
+}
+
+StructureCache::Turn::Turn(StructureCache& cache, const std::string& key) : cache_(cache), key_(key) {
+  std::unique_lock lock(cache_.mutex_);
+  cache_.turn_ended_.wait(lock, [&] { return !cache_.held_.contains(key_); });
+  cache_.held_.insert(key_);
+}
+
+StructureCache::Turn::~Turn() {
+  const std::lock_guard lock(cache_.mutex_);
+  cache_.held_.erase(key_);
+  cache_.turn_ended_.notify_all();
+}
+
+void StructureCache::count(uint64_t Counts::*which) {
+  const std::lock_guard lock(mutex_);
+  ++(counts_.*which);
 }
 
 }  // namespace glint::pipeline

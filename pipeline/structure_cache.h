@@ -1,7 +1,10 @@
 // Finds bottom-level structures that were built before, by the geometry they were built of.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
+#include <set>
 #include <string>
 
 #include "base/file_store.h"
@@ -10,8 +13,8 @@
 namespace glint::pipeline {
 
 // Keeps one file per structure, in a folder that any number of processes may share (base/file_store.h). Small
-// structures are built each time, because reading them takes as long. Only one thread at a time may use the
-// cache.
+// structures are built each time, because reading them takes as long. Any number of threads may use the
+// cache; of equal structures one is built, and the others wait for it.
 class StructureCache {
  public:
   struct Options {
@@ -31,11 +34,29 @@ class StructureCache {
   // Returns the same bytes as rt::encode_bottom.
   rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input,
                            const rt::BuildOptions& options);
+  // Returns the counts. No encode() may be under way.
   const Counts& counts() const { return counts_; }
 
  private:
+  // Holds a key, which no other thread can hold at the same time.
+  class Turn {
+   public:
+    Turn(StructureCache& cache, const std::string& key);
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    StructureCache& cache_;
+    const std::string& key_;
+  };
+  void count(uint64_t Counts::*which);
+
   const uint64_t least_primitives_;
   FileStore files_;
+  std::mutex mutex_;  // of the following
+  std::condition_variable turn_ended_;
+  std::set<std::string> held_;  // keys of structures that are being found or built
   Counts counts_;
 };
 

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <memory>
 #include <set>
-#include <thread>
 
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/bench/metrics_table.h"
@@ -18,6 +17,7 @@
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/run/recorded_run.h"
+#include "base/ordered_work.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
@@ -102,8 +102,7 @@ class Bench {
 
   void limits() {
     const uint64_t available = available_memory();
-    limits_.processes =
-        options_.processes > 0 ? options_.processes : std::max(1u, std::thread::hardware_concurrency());
+    limits_.processes = host_threads(options_.processes);
     limits_.memory = options_.memory > 0 ? uint64_t(options_.memory * 1e9) : available;
   }
 
