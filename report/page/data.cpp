@@ -127,10 +127,11 @@ void add_images(const PageRun& run, const ListedFiles& files, Json& out) {
   Json images = Json::array();
   for (const auto& [file, output] : outputs.items()) {
     const bool is_png = file.ends_with(".png");
-    if (!output.is_object() || output.value("kind", "") != "image" ||
+    if (!output.is_object() || !output.contains("name") || !output["name"].is_string() ||
+        !output.contains("kind") || output["kind"] != "image" ||
         !(is_png || file.ends_with(".pfm") || file.ends_with(".exr")))
       continue;
-    const std::string name = output.value("name", "");
+    const std::string name = output["name"];
     const auto bytes = seen.contains(name) ? std::nullopt : files.read(file);
     if (!bytes) continue;
     const Picture picture = read_picture(run.directory + "/" + file);

@@ -230,11 +230,11 @@ std::string pictures(const Json& data) {
   const Json& runs = data["runs"];
   for (size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].contains("picture")) out += picture(i, "", runs[i]["picture"], title_of(runs[i]));
-    for (const Json& image : runs[i].value("images", Json::array())) {
-      const std::string name = image["name"];
-      out += picture(i, "image:" + name, image["picture"],
-                     fmt::format("{}: {} ({})", title_of(runs[i]), name, image["file"].get<std::string>()));
-    }
+    size_t number = 0;
+    for (const Json& image : runs[i].value("images", Json::array()))
+      out += picture(i, fmt::format("image:{}", number++), image["picture"],
+                     fmt::format("{}: {} ({})", title_of(runs[i]), image["name"].get<std::string>(),
+                                 image["file"].get<std::string>()));
     for (const Json& map : runs[i].value("heat", Json::array()))
       out += picture(i, map["name"], map["picture"],
                      fmt::format("{}: {}, dark 0 to bright {} ({})", title_of(runs[i]), spaced(map["name"]),

@@ -331,18 +331,18 @@ class Compare(ReportTest):
                                 "imageStore(b, at, vec4(1)); n[at.x] = 7; }\n")
         self.write("fill.toml", "[compute]\nshader = 'fill.comp'\n[launch]\ngroups = [1, 4]\n"
                                 "[[image]]\nname = 'albedo'\nbinding = 0\nsize = [8, 4]\nsave = ['albedo.exr', 'albedo.png']\n"
-                                "[[image]]\nname = 'shade'\nbinding = 1\nsize = [8, 4]\nsave = 'light.pfm'\n"
+                                "[[image]]\nname = 'a\"<b'\nbinding = 1\nsize = [8, 4]\nsave = 'light.pfm'\n"
                                 "[[buffer]]\nname = 'numbers'\nbinding = 2\ncount = 8\ntype = 'u32'\nsave = 'n.csv'\n")
         done = self.glint("run", "fill.toml", "--mode", "timing", "--out", "run")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads((self.folder / "run/run.json").read_text())["outputs"],
                          {"albedo.exr": {"name": "albedo", "kind": "image"}, "albedo.png": {"name": "albedo", "kind": "image"},
-                          "light.pfm": {"name": "shade", "kind": "image"}, "n.csv": {"name": "numbers", "kind": "buffer"}})
+                          "light.pfm": {"name": "a\"<b", "kind": "image"}, "n.csv": {"name": "numbers", "kind": "buffer"}})
         done = self.glint("report", "run", "-o", "page.html")
         self.assertEqual(done.returncode, 0, done.stderr)
         page = (self.folder / "page.html").read_text()
         found = re.findall(r'data-map="image:([^"]*)" src="data:image/png;base64,([^"]*)"><figcaption>([^<]*)<', page)
-        self.assertEqual([(name, caption.split(": ")[1]) for name, _, caption in found], [("albedo", "albedo (albedo.exr)"), ("shade", "shade (light.pfm)")])
+        self.assertEqual([(name, caption.split(": ")[1]) for name, _, caption in found], [("0", "albedo (albedo.exr)"), ("1", "a&quot;&lt;b (light.pfm)")])
         for (_, data, _), grey in zip(found, (128, 255)):
             (self.folder / "shown.png").write_bytes(base64.b64decode(data))
             self.assertEqual(glint_case.read_png(self.folder / "shown.png"), (8, 4, bytes([grey] * 96)))

@@ -52,7 +52,7 @@ function sourceOf({ counts, ...rest }, listings) {
 function givePictures(runs) {
   for (const [, run, map, source] of document.getElementById("pictures").textContent.matchAll(/<img alt="" data-run="(\d+)" data-map="([^"]*)" src="([^"]*)">/g)) {
     const { [run]: owner } = runs;
-    if (map.startsWith("image:")) owner.images.find(({ name }) => `image:${name}` === map).picture = source;
+    if (map.startsWith("image:")) owner.images[Number(map.slice(6))].picture = source;
     else if (map) owner.heat.find(({ name }) => name === map).picture = source;
     else owner.picture = source;
   }
