@@ -107,7 +107,10 @@ class Colouring {
     std::vector<VirtualRegister> ready;
     for (VirtualRegister r : graph_.nodes()) {
       for_each_neighbour(r, [&](VirtualRegister n) { degree_[r] += blocked_by(classes_[r], classes_[n]); });
-      if (!surely_fits(r)) continue;
+      if (!surely_fits(r)) {
+        waiting_.push_back(r);
+        continue;
+      }
       state_[r] = State::Ready;
       ready.push_back(r);
     }
@@ -134,11 +137,11 @@ class Colouring {
 
   // Returns the best candidate to spill. Values that must not spill come last. Single registers come before
   // pairs, so that pairs are coloured first.
-  VirtualRegister cheapest_waiting() const {
+  VirtualRegister cheapest_waiting() {
+    std::erase_if(waiting_, [&](VirtualRegister r) { return state_[r] != State::Waiting; });
     VirtualRegister best = kNoRegister;
     float best_cost = 0;
-    for (VirtualRegister r : graph_.nodes()) {
-      if (state_[r] != State::Waiting) continue;
+    for (VirtualRegister r : waiting_) {
       const float cost = costs_.of(r) / float(degree_[r] + 1);
       const bool tie_by_size = best != kNoRegister && cost == best_cost &&
                                classes_[r] == RegisterClass::B32 && classes_[best] == RegisterClass::B64;
@@ -226,7 +229,7 @@ class Colouring {
   std::vector<uint16_t> slot_;
   std::vector<uint32_t> degree_;
   std::vector<State> state_;
-  std::vector<VirtualRegister> stack_, spilled_;
+  std::vector<VirtualRegister> stack_, spilled_, waiting_;
   int highest_ = 0;
   bool wished_nothing_ = true, stuck_ = false;
 };
