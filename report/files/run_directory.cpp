@@ -233,8 +233,10 @@ void RunDirectory::write_run(const RunInfo& info) const {
                               {"what", fault.what},
                               {"launch_id", fault.launch_id},
                               {"count", fault.count}});
-  for (const auto& [file, found] : info.not_finite)
+  for (const auto& [file, found] : info.not_finite) {
     json["not_finite"][file] = {{"pixels", found.pixels}, {"x", found.x}, {"y", found.y}};
+    if (!found.stores.empty()) json["not_finite"][file]["stores"] = found.stores;
+  }
   if (!info.saved.empty()) json["saved"] = info.saved;
   for (const OutputInfo& output : info.outputs)
     json["outputs"][output.file] = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};

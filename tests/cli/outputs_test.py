@@ -94,6 +94,16 @@ class Outputs(GlintTest):
             self.assertIn("warning: picture.pfm: 4 of 32 pixels are not finite; the first at x 5, y 2 from the top left: 1e+38 inf 1e+38", said)
             record = json.loads((self.folder / "out/run.json").read_text())
             self.assertEqual(record["not_finite"], {"picture.pfm": {"pixels": 4, "x": 5, "y": 2}})
+            self.assertNotIn("store to images", said)
+        said = self.ok("run", "p/p.toml", "--profile", "--out", "out").stderr
+        self.assertIn("1e+38 inf 1e+38; the shaders store to images at picture.comp:9\n", said)
+        record = json.loads((self.folder / "out/run.json").read_text())
+        self.assertEqual(record["not_finite"]["picture.pfm"]["stores"], ["picture.comp:9"])
+        twice = (self.folder / "p/picture.comp").read_text().replace("  imageStore(picture, at, colour);", "  if (at.x > 4)\n    imageStore(picture, at, colour);\n  else\n    imageStore(picture, at, colour * 0.5);\n"
+                                                                     "  if (at.x > 90) imageStore(picture, at, vec4(0));")
+        self.write("p/picture.comp", twice)
+        said = self.ok("run", "p/p.toml", "--profile", "--out", "out").stderr
+        self.assertIn("the shaders store to images at picture.comp:10 and picture.comp:12\n", said)  # line 13 never runs
         self.ok(*RUN, "--out", "run")
         self.assertNotIn("not_finite", json.loads((self.folder / "run/run.json").read_text()))
 

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/recorded_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <fmt/chrono.h>
 #include <new>
 #include <optional>
+#include <utility>
 
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/options/config.h"
@@ -140,9 +143,26 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
   }
 }
 
-void note_not_finite(const std::string& file, const pictures::ImageView& image, report::RunInfo& info) {
-  const std::optional<report::NotFinite> found = report::not_finite(image);
+namespace {
+
+// Returns the source lines whose image stores some lane executed, in order and without repetition.
+std::vector<std::string> lines_of_stores(const ProfileTable& profile) {
+  std::vector<std::string> out;
+  for (const ProfileRow& row : profile.rows) {
+    if (!row.op.starts_with("sust.") || row.lanes == 0 || row.line == 0) continue;
+    std::string place = fmt::format("{}:{}", std::filesystem::path(row.file).filename().string(), row.line);
+    if (std::find(out.begin(), out.end(), place) == out.end()) out.push_back(std::move(place));
+  }
+  return out;
+}
+
+}  // namespace
+
+void note_not_finite(const std::string& file, const pictures::ImageView& image, const ProfileTable& profile,
+                     report::RunInfo& info) {
+  std::optional<report::NotFinite> found = report::not_finite(image);
   if (!found) return;
+  found->stores = lines_of_stores(profile);
   info.not_finite.emplace_back(file, *found);
   fmt::print(stderr, "warning: {}: {}\n", file, report::text_of(*found, image));
 }

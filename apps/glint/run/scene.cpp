@@ -120,7 +120,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     const pictures::ImageView image{rendered.width, rendered.height, rendered.rgba};
     directory.write_image(image);
     if (exr) directory.write("image.exr", pictures::exr_bytes(image));
-    note_not_finite("image.pfm", image, info);
+    note_not_finite("image.pfm", image, rendered.profile, info);
     directory.write_stats(rendered.statistics(), info.compact);
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));
