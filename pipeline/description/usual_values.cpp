@@ -15,40 +15,40 @@ namespace glint::pipeline {
 namespace {
 
 using frontend::BlockType;
-using Matrix = std::array<double, 16>;  // column after column
+using Matrix4 = std::array<double, 16>;  // column after column
 
 constexpr uint32_t kMostWritten = 64;  // elements of an array that are written out
 
 // The camera stands at (0, 1, 4) and looks at the origin: a turn about x whose sine is 1 / sqrt(17).
 constexpr double kSine = 0.242536, kCosine = 0.970143, kDistance = 4.123106;
-constexpr Matrix kView{1, 0, 0, 0, 0, kCosine, kSine, 0, 0, -kSine, kCosine, 0, 0, 0, -kDistance, 1};
-constexpr Matrix kViewInverse{1, 0, 0, 0, 0, kCosine, -kSine, 0, 0, kSine, kCosine, 0, 0, 1, 4, 1};
+constexpr Matrix4 kView{1, 0, 0, 0, 0, kCosine, kSine, 0, 0, -kSine, kCosine, 0, 0, 0, -kDistance, 1};
+constexpr Matrix4 kViewInverse{1, 0, 0, 0, 0, kCosine, -kSine, 0, 0, kSine, kCosine, 0, 0, 1, 4, 1};
 // This is a perspective of 60 degrees onto a square, from 0.1 to 100, with depths from 0 to 1 and y downwards
 // as in Vulkan's pictures.
 constexpr double kFocal = 1.732051, kNear = 0.1, kFar = 100;
-constexpr Matrix kProjection{
+constexpr Matrix4 kProjection{
     kFocal, 0, 0, 0, 0, -kFocal, 0, 0, 0, 0, kFar / (kNear - kFar), -1, 0, 0, kNear* kFar / (kNear - kFar),
     0};
-constexpr Matrix kProjectionInverse{
+constexpr Matrix4 kProjectionInverse{
     1 / kFocal, 0, 0, 0, 0, -1 / kFocal, 0, 0, 0, 0, 0, (kNear - kFar) / (kNear * kFar), 0, 0, -1, 1 / kNear};
-constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix out{};
+Matrix4 product(const Matrix4& a, const Matrix4& b) {
+  Matrix4 out{};
   for (size_t column = 0; column < 4; ++column)
     for (size_t row = 0; row < 4; ++row)
       for (size_t k = 0; k < 4; ++k) out[4 * column + row] += a[4 * k + row] * b[4 * column + k];
   return out;
 }
 
-bool has(const std::string& name, std::initializer_list<const char*> words) {
+bool has_any(const std::string& name, std::initializer_list<const char*> words) {
   return std::any_of(words.begin(), words.end(),
                      [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-Matrix matrix_of(const std::string& name) {
-  const bool is_inverse = has(name, {"inv", "toworld", "to_world"});
-  const bool is_view = has(name, {"view", "camera", "cam"}), is_projection = has(name, {"proj"});
+Matrix4 matrix_of(const std::string& name) {
+  const bool is_inverse = has_any(name, {"inv", "toworld", "to_world"});
+  const bool is_view = has_any(name, {"view", "camera", "cam"}), is_projection = has_any(name, {"proj"});
   if (is_view && is_projection)
     return is_inverse ? product(kViewInverse, kProjectionInverse) : product(kProjection, kView);
   if (is_projection) return is_inverse ? kProjectionInverse : kProjection;
@@ -59,24 +59,25 @@ Matrix matrix_of(const std::string& name) {
 // Returns the numbers of a vector or of one number; vectors take as many as they have.
 std::array<double, 4> vector_of(const std::string& name, bool is_vector, uint32_t side) {
   const double s = side;
-  if (has(name, {"time", "frame", "seed", "offset"})) return {0, 0, 0, 0};
+  if (has_any(name, {"time", "frame", "seed", "offset"})) return {0, 0, 0, 0};
   if (!is_vector) return {1, 1, 1, 1};
-  if (has(name, {"resolution", "size", "extent", "viewport", "dimension"})) return {s, s, 1, 1};
-  const bool is_direction = has(name, {"dir", "forward", "front"});
-  if (has(name, {"light", "sun"}) && is_direction) return {0.48, 0.8, 0.36, 0};
-  if (has(name, {"light", "sun"}) && has(name, {"pos"})) return {2, 4, 3, 1};
+  if (has_any(name, {"resolution", "size", "extent", "viewport", "dimension"})) return {s, s, 1, 1};
+  const bool is_direction = has_any(name, {"dir", "forward", "front"});
+  if (has_any(name, {"light", "sun"}) && is_direction) return {0.48, 0.8, 0.36, 0};
+  if (has_any(name, {"light", "sun"}) && has_any(name, {"pos"})) return {2, 4, 3, 1};
   if (is_direction) return {0, -kSine, -kCosine, 0};
-  if (has(name, {"target", "lookat", "look_at", "center", "centre"})) return {0, 0, 0, 1};
-  if (has(name, {"eye", "pos", "origin", "camera"})) return {0, 1, 4, 1};
+  if (has_any(name, {"target", "lookat", "look_at", "center", "centre"})) return {0, 0, 0, 1};
+  if (has_any(name, {"eye", "pos", "origin", "camera"})) return {0, 1, 4, 1};
   if (name == "up" || name.ends_with("up")) return {0, kCosine, -kSine, 0};
   if (name.ends_with("right")) return {1, 0, 0, 0};
   return {1, 1, 1, 1};
 }
 
 uint32_t integer_of(const std::string& name, uint32_t side) {
-  if (has(name, {"width", "height", "resolution", "size", "extent"})) return side;
-  return has(name, {"num", "count", "samples", "spp", "rays", "bounces", "depth", "steps", "iterations"}) ? 4
-                                                                                                          : 0;
+  if (has_any(name, {"width", "height", "resolution", "size", "extent"})) return side;
+  return has_any(name, {"num", "count", "samples", "spp", "rays", "bounces", "depth", "steps", "iterations"})
+             ? 4
+             : 0;
 }
 
 std::string number_text(double value, bool is_real) {
@@ -89,7 +90,7 @@ std::string numbers_text(const std::string& name, const BlockType& type, uint32_
   const bool is_real = type.number[0] == 'f';
   const size_t count = type.offsets.size();
   std::vector<std::string> out;
-  const Matrix matrix = matrix_of(name);
+  const Matrix4 matrix = matrix_of(name);
   const std::array<double, 4> vector = vector_of(name, count > 1, side);
   for (size_t i = 0; i < count; ++i) {
     double value = integer_of(name, side);

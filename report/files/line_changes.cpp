@@ -41,7 +41,7 @@ std::map<std::string, CostedFile> costed_files(const ProfiledRun& run, const Cos
   return out;
 }
 
-std::string name_of(const std::string& path) {
+std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
@@ -54,9 +54,9 @@ std::map<std::string, std::string> matched_files(const std::map<std::string, Cos
     if (after.contains(path))
       out[path] = path;
     else
-      was[name_of(path)].push_back(path);
+      was[file_name(path)].push_back(path);
   for (const auto& [path, file] : after)
-    if (!before.contains(path)) is[name_of(path)].push_back(path);
+    if (!before.contains(path)) is[file_name(path)].push_back(path);
   for (const auto& [name, paths] : was)
     if (const auto found = is.find(name); found != is.end() && paths.size() == 1 && found->second.size() == 1)
       out[paths[0]] = found->second[0];
@@ -118,7 +118,7 @@ std::pair<uint64_t, uint64_t> wholes(const ProfileTable& profile, const CostOf& 
   return {whole, without};
 }
 
-uint64_t distance(const LineChange& c) {
+uint64_t change_size(const LineChange& c) {
   return c.cost_after > c.cost_before ? c.cost_after - c.cost_before : c.cost_before - c.cost_after;
 }
 
@@ -132,11 +132,11 @@ std::vector<std::string> cost_cells(uint64_t before, uint64_t after) {
           before ? fmt::format("{:.2f}", part(after, before)) : "-"};
 }
 
-std::vector<std::string> row_of(const LineChange& c) {
+std::vector<std::string> change_cells(const LineChange& c) {
   std::vector<std::string> cells = cost_cells(c.cost_before, c.cost_after);
   const auto number = [](uint32_t line) { return line ? std::to_string(line) : std::string("-"); };
   const std::string lines = c.before == c.after ? number(c.after) : number(c.before) + ">" + number(c.after);
-  cells.push_back(name_of(c.file) + ":" + lines);
+  cells.push_back(file_name(c.file) + ":" + lines);
   cells.push_back(c.text);
   return cells;
 }
@@ -220,9 +220,10 @@ std::string line_changes_text(const LineComparison& comparison, const std::strin
   std::erase_if(lines, [](const LineChange& c) { return c.cost_before + c.cost_after == 0; });
   const size_t of = lines.size();
   if (top) {
-    std::erase_if(lines, [](const LineChange& c) { return distance(c) == 0; });
-    std::stable_sort(lines.begin(), lines.end(),
-                     [](const LineChange& a, const LineChange& b) { return distance(a) > distance(b); });
+    std::erase_if(lines, [](const LineChange& c) { return change_size(c) == 0; });
+    std::stable_sort(lines.begin(), lines.end(), [](const LineChange& a, const LineChange& b) {
+      return change_size(a) > change_size(b);
+    });
     if (lines.size() > top) lines.resize(top);
   }
   std::vector<std::vector<std::string>> rows{
@@ -234,7 +235,7 @@ std::string line_changes_text(const LineComparison& comparison, const std::strin
   total(comparison.whole_before, comparison.whole_after, "(all instructions)");
   if (comparison.no_line_before + comparison.no_line_after)
     total(comparison.no_line_before, comparison.no_line_after, "(instructions without a line)");
-  for (const LineChange& line : lines) rows.push_back(row_of(line));
+  for (const LineChange& line : lines) rows.push_back(change_cells(line));
   std::string heading;
   if (top)
     heading = lines.empty() ? fmt::format("None of the {} lines changed\n", of)
