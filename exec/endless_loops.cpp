@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <fmt/format.h>
+#include <map>
 #include <utility>
 
 #include "exec/launch.h"
@@ -134,6 +136,31 @@ std::string loops_around(const Image& image, uint32_t pc) {
     out +=
         fmt::format("{}{}", out.empty() ? "it is in " : ", and that is in ", span_text(image, first, last));
   return out;
+}
+
+std::string whereabouts(const Image& image, std::span<const uint32_t> pcs) {
+  struct Line {
+    size_t num_warps = 0;
+    uint32_t pc = 0;
+  };
+  // Places are compared without their instructions.
+  const auto line_of = [&](uint32_t pc) {
+    const std::string place = image.place_of(pc);
+    return place.substr(0, place.find(" ("));
+  };
+  std::map<std::string, Line> lines;
+  for (const uint32_t pc : pcs) {
+    Line& line = lines[line_of(pc)];
+    line.pc = line.num_warps++ == 0 ? pc : std::min(line.pc, pc);
+  }
+  if (lines.empty()) return "";
+  const auto most = std::max_element(lines.begin(), lines.end(), [](const auto& a, const auto& b) {
+    return a.second.num_warps != b.second.num_warps ? a.second.num_warps < b.second.num_warps
+                                                    : a.second.pc > b.second.pc;
+  });
+  const std::string loops = loops_around(image, most->second.pc);
+  return fmt::format("{} of {} running warps are at {}{}{}", most->second.num_warps, pcs.size(), most->first,
+                     loops.empty() ? "" : "; ", loops);
 }
 
 }  // namespace glint::exec

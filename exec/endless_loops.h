@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,10 @@ class EndlessLoops {
 // and that is in the loop of lines 3 to 12". Without source lines the text names instructions. It is empty
 // outside of loops.
 std::string loops_around(const Image& image, uint32_t pc);
+
+// Says where warps are that come to these instructions next: the line where most of them are, how many these
+// are, and the loops around it. It is empty without warps. Of lines with as many warps, the one with the
+// first instruction is named.
+std::string whereabouts(const Image& image, std::span<const uint32_t> pcs);
 
 }  // namespace glint::exec

@@ -3,6 +3,7 @@
 #include "pipeline/functional_machine.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/num_lanes.h"
@@ -75,6 +76,13 @@ class Runner {
     return out;
   }
 
+  std::string whereabouts() const {
+    std::vector<uint32_t> pcs;
+    for (const WarpContext& warp : warps_)
+      if (block_.live() >> warp.warp_in_block & 1) pcs.push_back(warp.simt.pc);
+    return exec::whereabouts(*world_.image, pcs);
+  }
+
   Executor executor;
   FunctionalCounts counts;
 
@@ -128,6 +136,7 @@ FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_b
     if (!runner.run_block(index)) {
       runner.counts.end = LaunchEnd::Stopped;
       runner.counts.progress = runner.progress(uint64_t(index) * warps);
+      runner.counts.progress.where = runner.whereabouts();
       break;
     }
     runner.tell(uint64_t(index + 1) * warps);

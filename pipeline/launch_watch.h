@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "base/types.h"
@@ -14,6 +15,7 @@ struct LaunchProgress {
   uint64_t ended_warps = 0, num_warps = 0;
   Cycle cycles = 0;           // 0 on the functional machine
   uint64_t instructions = 0;  // warp instructions
+  std::string where{};        // of a launch that was ended early: exec::whereabouts() of its warps
 };
 
 // Says why a launch ended.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/check.h"
+#include "exec/endless_loops.h"
 #include "pipeline/check_params.h"
 #include "pipeline/conservation.h"
 #include "pipeline/functional_machine.h"
@@ -121,6 +122,7 @@ Cycle TimingMachine::run(const LaunchWatch& watch) {
           // A launch whose warps have all ended only waits for its last writes.
           if (progress_.ended_warps < progress_.num_warps) {
             end_ = end;
+            progress_.where = whereabouts();
             return EngineLoop::Next::Stop;
           }
         }
@@ -168,6 +170,16 @@ uint64_t TimingMachine::instructions() const {
   uint64_t sum = 0;
   for (const auto& core : cores_) sum += core->stats().instructions.value();
   return sum;
+}
+
+std::string TimingMachine::whereabouts() const {
+  std::vector<uint32_t> pcs;
+  for (const auto& core : cores_)
+    core->find_warp([&](const exec::WarpContext& warp) {
+      if (!warp.simt.finished()) pcs.push_back(warp.simt.pc);
+      return false;
+    });
+  return exec::whereabouts(*world_.image, pcs);
 }
 
 void TimingMachine::refuse_endless_loops() const {

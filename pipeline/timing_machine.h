@@ -60,6 +60,7 @@ class TimingMachine {
 
  private:
   [[noreturn]] void throw_livelock(Cycle now) const;
+  std::string whereabouts() const;
   void refuse_endless_loops() const;
   uint64_t instructions() const;
   void finish(Cycle quiet, Cycle cycles);

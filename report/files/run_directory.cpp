@@ -246,7 +246,8 @@ void RunDirectory::write_run(const RunInfo& info) const {
     json["partial"] = {{"reason", part->reason},
                        {"cycles", part->cycles},
                        {"ended_warps", part->ended_warps},
-                       {"num_warps", part->num_warps}};
+                       {"num_warps", part->num_warps},
+                       {"where", part->where}};
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;

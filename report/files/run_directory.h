@@ -40,6 +40,7 @@ struct ResidencyInfo {
 struct PartInfo {
   std::string reason;  // "max_cycles", "SIGINT", "SIGTERM"
   uint64_t cycles = 0, ended_warps = 0, num_warps = 0;
+  std::string where;  // the line and loops where most running warps were; empty when none ran
 };
 
 // Names a file that holds an image or a buffer of a pipeline, or a buffer of a kernel.

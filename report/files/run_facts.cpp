@@ -59,6 +59,7 @@ constexpr Fact kFacts[] = {{"/schema", "number"},
                            {"/partial/cycles", "number"},
                            {"/partial/ended_warps", "number"},
                            {"/partial/num_warps", "number"},
+                           {"/partial/where", "string"},
                            {"/exit", "number"},
                            {"/message", "string"}};
 

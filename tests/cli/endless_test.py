@@ -158,6 +158,16 @@ class Early(GlintTest):
         self.assertIn("<title>SHIP sh, partial", page)
         self.assertIn(f"out is partial</strong>: the launch was ended early at cycle {part['cycles']}", page)
 
+    def test_a_launch_that_is_ended_early_names_the_line_and_the_loops_where_its_warps_were(self):
+        (self.folder / "never.comp").write_text(NEVER_TAKEN)
+        where = r"(\d+) of (\d+) running warps are at .*never\.comp:[67]; it is in the loop of lines 6 to 7, and that is in the loop of lines 5 to 7"
+        done = self.glint("run", "never.comp", "--max-cycles", "20000", "--out", "out")
+        self.assertEqual(done.returncode, 6, done.stderr)
+        self.assertRegex(done.stderr, where)
+        found = re.search(where, self.record()["partial"]["where"])
+        self.assertGreater(int(found[1]), 0)
+        self.assertLessEqual(int(found[1]), int(found[2]))
+
     def test_a_partial_run_is_the_same_at_any_number_of_threads_and_without_skipping(self):
         files = []
         for options in (["--threads", "1"], ["--threads", "2"], ["--threads", "4"], ["--no-skip"]):

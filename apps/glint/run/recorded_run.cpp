@@ -66,12 +66,12 @@ void add_part(const pipeline::RenderResult& result, int signal, report::RunInfo&
   info.part = {!is_stopped        ? "max_cycles"
                : signal == SIGINT ? "SIGINT"
                                   : "SIGTERM",
-               at.cycles, at.ended_warps, at.num_warps};
+               at.cycles, at.ended_warps, at.num_warps, at.where};
   info.exit = is_stopped ? kShellSignal + signal : int(kReachedMaxCycles);
-  info.message =
-      fmt::format("the launch was ended early{}, by {}: {} of {} warps have ended",
-                  at.cycles ? fmt::format(" at cycle {}", at.cycles) : "",
-                  is_stopped ? name_of_signal(signal) : "--max-cycles", at.ended_warps, at.num_warps);
+  info.message = fmt::format("the launch was ended early{}, by {}: {} of {} warps have ended{}{}",
+                             at.cycles ? fmt::format(" at cycle {}", at.cycles) : "",
+                             is_stopped ? name_of_signal(signal) : "--max-cycles", at.ended_warps,
+                             at.num_warps, at.where.empty() ? "" : ", and ", at.where);
 }
 
 void keep_prints(const std::string& printed, const report::RunDirectory& directory) {
