@@ -73,6 +73,14 @@ std::vector<std::string> maps_before(const std::string& path) {
   });
 }
 
+nlohmann::ordered_json json_of(const PartInfo& part) {
+  return {{"reason", part.reason},
+          {"cycles", part.cycles},
+          {"ended_warps", part.ended_warps},
+          {"num_warps", part.num_warps},
+          {"where", part.where}};
+}
+
 }  // namespace
 
 void write_file(const std::string& path, const std::string& bytes) {
@@ -242,12 +250,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
     json["outputs"][output.file] = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};
   written_.erase("run.json");  // A file cannot hold its own sum.
   json["files"] = json_of(written_);
-  if (const auto& part = info.part)
-    json["partial"] = {{"reason", part->reason},
-                       {"cycles", part->cycles},
-                       {"ended_warps", part->ended_warps},
-                       {"num_warps", part->num_warps},
-                       {"where", part->where}};
+  if (info.part) json["partial"] = json_of(*info.part);
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;
