@@ -42,7 +42,7 @@ def find_glint(glint: str | pathlib.Path | None = None) -> str:
 
 
 def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | None = None, config: str | pathlib.Path = "mobile",
-        set: Mapping[str, Any] | None = None, size: tuple[int, int] | None = None, spp: int | None = None, mode: str | None = None,
+        set: Mapping[str, Any] | None = None, size: tuple[int, int] | str | None = None, spp: int | None = None, mode: str | None = None,
         profile: bool = False, sample: int | None = None, options: Iterable[str] = (), glint: str | pathlib.Path | None = None) -> Run:
     """Renders a scene or workload, or launches a pipeline or kernel, with `glint run`, and reads the run.
 
@@ -52,7 +52,7 @@ def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | Non
         shader: One of "pt", "sh" and "ao".
         config: A preset or TOML file.
         set: The configuration keys that differ, {"rt.warps": 8}.
-        size: The picture's (width, height) in pixels.
+        size: The picture's (width, height) in pixels, or both as on the command line, "256x128".
         spp: Samples per pixel.
         mode: Either "timing" or "functional".
         profile: Whether to count by instruction and line.
@@ -65,7 +65,7 @@ def run(scene: str | pathlib.Path, *, out: str | pathlib.Path, shader: str | Non
         TypeError: `options` is one text instead of a list of words.
     """
     words = [find_glint(glint), "run", str(scene), "--config", str(config), "--out", str(out)]
-    named = {"--shader": shader, "--spp": spp, "--mode": mode, "--sample": sample, "--size": "{}x{}".format(*size) if size else None}
+    named = {"--shader": shader, "--spp": spp, "--mode": mode, "--sample": sample, "--size": _size(size)}
     for option, value in named.items():
         words += [option, str(value)] if value is not None else []
     for key, value in (set or {}).items():
@@ -162,6 +162,11 @@ def _plain(value: Any) -> Any:
     if isinstance(value, pathlib.PurePath):
         return str(value)
     return value.item() if hasattr(value, "item") else value
+
+
+def _size(size: tuple[int, int] | str | None) -> str | None:
+    """Returns the picture's size as on the command line."""
+    return size if size is None or isinstance(size, str) else "{}x{}".format(*size)
 
 
 def _words(options: Iterable[str]) -> list[str]:

@@ -177,6 +177,16 @@ class Browser(ReportTest):
         _, text = self.load("wknd", "slow")
         self.assertNotIn('<figure id="geometry"', text)  # one scene, the same structures
 
+    def test_the_page_of_a_run_says_what_was_changed_in_its_scene_and_which_window_it_shows(self):
+        done = self.glint("run", "WKND_SH", "--size", "16x16", "--spp", "1", "--fov", "40", "--light", "sky=off", "--crop", "4,8,8,4", "--out", "changed")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.runs["changed"] = f"{self.folder}/changed"
+        _, text = self.load("changed")
+        self.assertIn("The scene was changed: camera.fov = 40; light.sky = off.", text)
+        self.assertIn("The picture is the window of a frame of 16×16 that begins at (4, 8).", text)
+        _, text = self.load("wknd")
+        self.assertNotIn("was changed", re.sub(r"<script.*?</script>", "", text, flags=re.S))
+
     def test_configurations_are_told_apart_by_every_key_and_compared_for_the_same_work_only(self):
         """Tests copies of one run: three keys changed step by step, a run of another size, and the same run twice."""
         keys = ["requests_per_cycle", "request_bytes", "retires_per_cycle"]

@@ -26,6 +26,13 @@ class Number:
         return self.value
 
 
+class Sizes(PythonTest):
+    def test_a_size_is_a_pair_or_the_text_of_the_command_line(self):
+        for i, size in enumerate(((16, 8), "16x8")):
+            run = self.glint.run("SHIP_SH", out=self.folder / f"size{i}", size=size, spp=1, mode="functional", glint=GLINT)
+            self.assertEqual((run.info["width"], run.info["height"]), (16, 8))
+
+
 class Sweeps(PythonTest):
     def test_workloads_of_the_same_file_name_have_folders_of_their_own(self):
         files = [ROOT / "examples/spheres/pipeline.toml", ROOT / "examples/hello_triangle/pipeline.toml"]

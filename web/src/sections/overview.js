@@ -52,11 +52,19 @@ const imageOf = (run, image) => h("figure", { class: "image", "data-image": imag
 
 const thumbOf = (run) => run.data.picture ?? run.data.images?.[0].picture;
 
+// Says what a run changed in its scene, and which part of the frame it has.
+function changesOf({ overrides, crop }) {
+  const changed = Object.entries(overrides ?? {}).map(([key, value]) => `${key} = ${value}`);
+  const sentences = changed.length ? [`The scene was changed: ${changed.join("; ")}.`] : [];
+  if (crop) sentences.push(`The picture is the window of a frame of ${crop.frame_width}×${crop.frame_height} that begins at (${crop.x}, ${crop.y}).`);
+  return sentences.join(" ");
+}
+
 function single(run) {
   const { facts } = run;
   const picture = pictureOf(run);
   const numbers = numbersOf([run]).map((one) => h("div", { class: "number" }, h("dt", {}, one.name), h("dd", { "data-stat": one.stat, "data-value": one.value(run) }, one.text(one.value(run))), h("dd", { class: "sub" }, one.sub(run))));
-  const details = [facts.scene.note, facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
+  const details = [facts.scene.note, changesOf(facts), facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
   return [
     h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, run.workload), h("p", { class: "about" }, about(run))),
     h("div", { class: picture ? "key with-picture" : "key" }, picture, h("dl", { class: "numbers" }, numbers)),
