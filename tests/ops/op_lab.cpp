@@ -3,7 +3,6 @@
 #include "tests/ops/op_lab.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -14,8 +13,7 @@
 #include "base/diagnostics.h"
 #include "isa/text.h"
 #include "isa/verify.h"
-#include "pipeline/functional_machine.h"
-#include "pipeline/timing_machine.h"
+#include "tests/ops/machine_run.h"
 #include "tests/support/catch.h"
 
 namespace glint::test {
@@ -263,19 +261,8 @@ Outcome OpLab::run_on(bool timing, const std::vector<Column>& sources, uint64_t 
 
   Outcome out;
   out.after = before;
-  const auto listen = [&](const exec::Retired& retired) {
-    if (retired.issued.row == counted_) out.lanes += uint64_t(std::popcount(retired.issued.lanes));
-  };
   try {
-    if (timing) {
-      pipeline::GpuParams gpu;
-      gpu.cores = 2;
-      pipeline::TimingMachine machine(gpu, world, false);
-      for (uint32_t c = 0; c < machine.num_cores(); ++c) machine.core(c).executor().retired.listen(listen);
-      machine.run({});
-    } else {
-      pipeline::run_functional(world, 100'000, {}, listen);
-    }
+    run_machine(world, timing, 100'000, *counted_, out.lanes);
   } catch (const Error& error) {
     out.fault = error.what();
   }

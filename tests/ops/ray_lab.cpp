@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/ops/ray_lab.h"
 
-#include <bit>
 #include <cstring>
 #include <fmt/format.h>
 #include <utility>
@@ -10,8 +9,7 @@
 #include "base/diagnostics.h"
 #include "isa/text.h"
 #include "isa/verify.h"
-#include "pipeline/functional_machine.h"
-#include "pipeline/timing_machine.h"
+#include "tests/ops/machine_run.h"
 #include "tests/ops/op_lab.h"
 #include "tests/support/catch.h"
 
@@ -93,18 +91,7 @@ RayLab::Outcome RayLab::run_on(bool timing, const isa::OpRow& counted, const Thr
   const std::vector<uint32_t> unwritten(kThreads * kLogWords, kUnwritten);
   memory.write(log_, unwritten.data(), unwritten.size() * 4);
   Outcome out;
-  const auto listen = [&](const exec::Retired& retired) {
-    if (retired.issued.row == &counted) out.lanes += uint64_t(std::popcount(retired.issued.lanes));
-  };
-  if (timing) {
-    pipeline::GpuParams gpu;
-    gpu.cores = 2;
-    pipeline::TimingMachine machine(gpu, world, false);
-    for (uint32_t c = 0; c < machine.num_cores(); ++c) machine.core(c).executor().retired.listen(listen);
-    machine.run({});
-  } else {
-    pipeline::run_functional(world, 1'000'000, {}, listen);
-  }
+  run_machine(world, timing, 1'000'000, counted, out.lanes);
   const auto words = memory.view<uint32_t>(log_, kThreads * kLogWords);
   for (size_t t = 0; t < kThreads; ++t)
     out.log.emplace_back(words.begin() + ptrdiff_t(t * kLogWords),
