@@ -20,6 +20,9 @@ class OperandWheel {
   // Returns the warps whose operands were missing at the last advance().
   uint64_t missing() const { return missing_; }
 
+  // Returns when the operands of `warp` come; kNever: nobody knows it yet.
+  Cycle at(uint32_t warp) const { return at_[warp]; }
+
   // Notes that the operands of `warp` come in cycle `at`. kNever: nobody knows it yet.
   void set(uint32_t warp, Cycle at) {
     const uint64_t bit = uint64_t{1} << warp;

@@ -76,7 +76,7 @@ uint64_t Scheduler::find_ready(Cycle now, const Doors& doors) {
 }
 
 NextIssue Scheduler::next_of(uint32_t warp) const {
-  return {ready_at_[warp], wait_[warp], pipe_[warp], door_[warp]};
+  return {operands_.at(warp), wait_[warp], pipe_[warp], door_[warp]};
 }
 
 // Returns the reason that the scheduler would have if this warp were its only one.
@@ -94,7 +94,7 @@ std::optional<uint32_t> Scheduler::to_blame(Cycle now, const Doors& doors) const
   bool best_fits = false;
   // Returns whether warp `a` is to blame rather than warp `b`.
   const auto before = [&](uint32_t a, uint32_t b) {
-    const Cycle until_a = std::max(ready_at_[a], now), until_b = std::max(ready_at_[b], now);
+    const Cycle until_a = std::max(operands_.at(a), now), until_b = std::max(operands_.at(b), now);
     return until_a != until_b ? until_a < until_b : age_[a] < age_[b];
   };
   for (uint64_t rest = resident_; rest; rest &= rest - 1) {

@@ -74,7 +74,6 @@ class Scheduler {
   void set_next(uint32_t warp, const NextIssue& next) {
     const uint64_t bit = uint64_t{1} << warp;
     operands_.set(warp, next.ready_at);
-    ready_at_[warp] = next.ready_at;
     wait_[warp] = next.wait;
     needs_pipe_[size_t(pipe_[warp])] &= ~bit;
     needs_pipe_[size_t(next.pipe)] |= bit;
@@ -87,7 +86,6 @@ class Scheduler {
   // Notes that the warp has ended and waits for its last accesses.
   void drain(uint32_t warp) {
     operands_.set(warp, kNever);
-    ready_at_[warp] = kNever;
     wait_[warp] = Stall::Drain;
   }
   // Notes that the core has no warps, which is the reason of its cycles from now on.
@@ -164,7 +162,6 @@ class Scheduler {
   std::array<uint64_t, kNumDoors> needs_door_{};  // bit i of an entry: warp i enters that door next
   Cycle pipes_free_ = 0;                      // first cycle in which another instruction can go to any pipe
   std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
-  std::array<Cycle, kMaxWarpsPerScheduler> ready_at_{};
   std::array<Stall, kMaxWarpsPerScheduler> wait_{};
   std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
   std::array<Door, kMaxWarpsPerScheduler> door_{};
