@@ -14,11 +14,6 @@
 
 namespace glint {
 
-// Returns the number of threads that stand for `wanted`: as many as the host has processors for 0.
-inline uint32_t host_threads(uint32_t wanted) {
-  return wanted ? wanted : std::max(1u, std::thread::hardware_concurrency());
-}
-
 // Calls make(i) for each i below `count` on up to `threads` threads, of which the caller's is one, and
 // take(i, result) in the order of i on the caller's thread. Results that wait to be taken are at most two for
 // each thread, so that memory does not grow with `count`. When make(i) throws, the exception leaves run()

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
-#include "base/ordered_work.h"
+#include "base/host_threads.h"
 
 namespace glint {
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/host_threads.h"
 #include "base/ordered_work.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/software_traversal.h"

@@ -17,7 +17,7 @@
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/run/recorded_run.h"
-#include "base/ordered_work.h"
+#include "base/host_threads.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
