@@ -4,11 +4,10 @@
 
 #include <fmt/format.h>
 #include <optional>
+#include <set>
 #include <utility>
 
-#define TOML_EXCEPTIONS 1
-#include <set>
-#include <toml++/toml.h>
+#include "base/toml_text.h"
 
 namespace glint {
 
@@ -71,15 +70,6 @@ void merge(toml::table& into, const toml::table& from) {
   }
 }
 
-toml::table parse(const std::string& text, const std::string& name) {
-  try {
-    return toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw UserError({name, int(at.line), int(at.column)}, std::string(error.description()));
-  }
-}
-
 }  // namespace
 
 Config::Config() : layers_(std::make_unique<Layers>()) {
@@ -88,18 +78,11 @@ Config::~Config() = default;
 Config::Config(Config&&) noexcept = default;
 
 void Config::add_file(const std::string& path) {
-  try {
-    merge(layers_->merged, toml::parse_file(path));
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    if (at.line == 0)
-      throw UserError({path}, "cannot read the configuration file", "give a TOML file or a preset's name");
-    throw UserError({path, int(at.line), int(at.column)}, std::string(error.description()));
-  }
+  merge(layers_->merged, toml_of_file(path));
 }
 
 void Config::add_text(const std::string& name, const std::string& text) {
-  merge(layers_->merged, parse(text, name));
+  merge(layers_->merged, toml_of_text(text, name));
 }
 
 void Config::add_setting(const std::string& key_value) {
@@ -113,7 +96,7 @@ void Config::add_setting(const std::string& key_value) {
       return toml::parse(key + " = " + value, name);
     } catch (const toml::parse_error& error) {
       if (is_number_like(value)) throw UserError({name}, std::string(error.description()));
-      return parse(key + " = \"" + value + "\"", name);  // a bare word is a string
+      return toml_of_text(key + " = \"" + value + "\"", name);  // a bare word is a string
     }
   }();
   merge(layers_->merged, table);

@@ -97,11 +97,6 @@ DecodedPicture to_bytes(std::string_view file) {
 
 }  // namespace
 
-bool is_float_picture(const std::string& path) {
-  const std::optional<std::string> file = read_regular_file(path);
-  return file && (is_exr(*file) || is_pfm(*file) || is_hdr(*file));
-}
-
 DecodedPicture decode_picture_file(const std::string& path) {
   const std::optional<std::string> file = read_regular_file(path);
   if (!file) return unreadable();

@@ -22,9 +22,6 @@ struct DecodedPicture {
   std::string error;  // why there are no pixels; empty when there are
 };
 
-// Returns whether a file holds floats: HDR, PFM or EXR. What cannot be read holds none.
-bool is_float_picture(const std::string& path);
-
 // Decodes a file. Files that hold floats give floats; all others give bytes.
 DecodedPicture decode_picture_file(const std::string& path);
 

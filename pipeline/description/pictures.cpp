@@ -25,11 +25,15 @@ struct Layer {
   std::vector<Texel> texels;
 };
 
-// Loads a file. 8-bit files give values of 0 to 1, unless the format keeps integers.
-Layer load(const std::string& path, bool as_integers, const SourceLocation& where) {
-  const pictures::DecodedPicture picture = pictures::decode_picture_file(path);
+pictures::DecodedPicture load(const std::string& path, const SourceLocation& where) {
+  pictures::DecodedPicture picture = pictures::decode_picture_file(path);
   if (!picture.error.empty())
     throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
+  return picture;
+}
+
+// Returns a file's texels. Those of 8-bit files become values of 0 to 1, unless the format keeps integers.
+Layer layer_of(const pictures::DecodedPicture& picture, bool as_integers) {
   Layer out;
   out.width = picture.width, out.height = picture.height;
   out.is_float = !picture.floats.empty();
@@ -76,6 +80,21 @@ void check_data(const ImageDescription& image, const exec::ImageView& view, size
             "image '{}' has {} numbers, but {} x {} x {} texels with {} layers and {} channels want {}",
             image.name, image.data.size(), view.width, view.height, view.depth, view.layers, channels,
             wanted));
+}
+
+// Returns the texels of level 0 of an image whose size is known and that has no files.
+std::vector<Texel> texels_without_files(const ImageDescription& image, const exec::ImageView& view,
+                                        size_t channels) {
+  std::vector<Texel> out;
+  RandomNumbers random(image.seed);
+  const bool is_given = image.init == "data";
+  if (is_given) check_data(image, view, channels);
+  for (uint32_t layer = 0; layer < view.layers; ++layer)
+    for (uint32_t z = 0; z < view.depth; ++z)
+      for (uint32_t y = 0; y < view.height; ++y)
+        for (uint32_t x = 0; x < view.width; ++x)
+          out.push_back(is_given ? given(image, out.size(), channels) : made_up(image, x, y, z, random));
+  return out;
 }
 
 exec::Words words_of(const Texel& texel, const exec::FormatInfo& info) {
@@ -147,7 +166,10 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
                              : texel == "s32" ? TexelFormat::Rgba32Sint
                                               : TexelFormat::Rgba32Float;
   const TexelFormat plain = (image.files.empty() ? format_named(declared) : std::nullopt).value_or(widest);
-  const bool has_floats = !image.files.empty() && pictures::is_float_picture(image.files[0]);
+  // The first file says which format an image has that names none.
+  std::optional<pictures::DecodedPicture> first;
+  if (!image.files.empty()) first = load(image.files[0], image.where);
+  const bool has_floats = first && !first->floats.empty();
   view.format = image.format.value_or(!image.files.empty() && !has_floats && texel != "u32" && texel != "s32"
                                           ? TexelFormat::Rgba8Unorm
                                           : plain);
@@ -159,7 +181,8 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
 
   std::vector<Texel> level;
   for (const std::string& file : image.files) {
-    Layer layer = load(file, exec::is_integer(info), image.where);
+    Layer layer = layer_of(first ? *first : load(file, image.where), exec::is_integer(info));
+    first.reset();
     if (!level.empty() && (layer.width != view.width || layer.height != view.height))
       throw UserError(image.where, fmt::format("'{}' is {} x {}, and the files before it are {} x {}", file,
                                                layer.width, layer.height, view.width, view.height));
@@ -174,15 +197,7 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
     view.width = size[0];
     view.height = isa::num_coordinates(shape) > 1 || image.size[0] ? size[1] : 1;
     view.depth = shape == ImageShape::D3 || image.size[0] ? size[2] : 1;
-    RandomNumbers random(image.seed);
-    const bool is_given = image.init == "data";
-    if (is_given) check_data(image, view, info.channels);
-    for (uint32_t layer = 0; layer < view.layers; ++layer)
-      for (uint32_t z = 0; z < view.depth; ++z)
-        for (uint32_t y = 0; y < view.height; ++y)
-          for (uint32_t x = 0; x < view.width; ++x)
-            level.push_back(is_given ? given(image, level.size(), info.channels)
-                                     : made_up(image, x, y, z, random));
+    level = texels_without_files(image, view, info.channels);
   } else if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height)) {
     throw UserError(image.where,
                     fmt::format("the file of image '{}' is {} x {}, and 'size' says {} x {}", image.name,

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/description/value.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
 #include <utility>
 
-#define TOML_EXCEPTIONS 1
-#include <algorithm>
-#include <toml++/toml.h>
+#include "base/toml_text.h"
 
 namespace glint::pipeline {
 namespace {
@@ -47,17 +46,6 @@ Value value_of(const toml::node& node, const std::string& file) {
   return out;
 }
 
-template <class Parse>
-Value parsed(const std::string& file, const Parse& parse) {
-  try {
-    const toml::table root = parse();
-    return value_of(root, file);
-  } catch (const toml::parse_error& error) {
-    throw UserError({file, int(error.source().begin.line), int(error.source().begin.column)},
-                    std::string(error.description()));
-  }
-}
-
 const char* name_of(Value::Kind kind) {
   constexpr const char* kNames[] = {"nothing",  "true or false", "a whole number", "a number",
                                     "a string", "a list",        "a table"};
@@ -83,10 +71,10 @@ const Value* Value::find(const std::string& key) const {
 }
 
 Value read_toml(const std::string& path) {
-  return parsed(path, [&] { return toml::parse_file(path); });
+  return value_of(toml_of_file(path), path);
 }
 Value parse_toml(const std::string& text, const std::string& name) {
-  return parsed(name, [&] { return toml::parse(text, name); });
+  return value_of(toml_of_text(text, name), name);
 }
 
 TableReader::TableReader(const Value& table, std::string what, Diagnostics& errors)

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -43,6 +45,26 @@ std::error_code put(const std::string& path, const std::string& bytes) {
   out.write(bytes.data(), std::streamsize(bytes.size())).flush();
   out.close();
   return out ? std::error_code() : std::error_code(errno != 0 ? errno : EIO, std::generic_category());
+}
+
+std::string temporary_name(const std::string& file, long process) {
+  return fmt::format("{}.{}.tmp", file, process);
+}
+
+// Removes from a folder what write_file() has left of files for whose name `is_own` holds, where a process
+// was killed that wrote one. The caller holds the lock of the folder.
+template <class IsOwn>
+void remove_temporaries(const std::string& folder, IsOwn&& is_own) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() != ".tmp") continue;
+    const std::string number = name.stem().extension().string(), file = name.stem().stem().string();
+    const long process = std::strtol(number.c_str() + !number.empty(), nullptr, 10);
+    if (process > 0 && name == temporary_name(file, process) && is_own(file) &&
+        ::kill(pid_t(process), 0) != 0 && errno == ESRCH)
+      fs::remove(entry.path(), ignored);
+  }
 }
 
 // Returns the strings of a list in a JSON file, or none when the file has no such list. It returns only names
@@ -95,7 +117,7 @@ void write_file(const std::string& path, const std::string& bytes) {
   }
   const std::string target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error).string() : path;
   // The process id in the name keeps two processes from writing the same temporary file.
-  const std::string temporary = fmt::format("{}.{}.tmp", target, ::getpid());
+  const std::string temporary = temporary_name(target, ::getpid());
   std::error_code why = put(temporary, bytes), ignored;
   if (!why) fs::rename(temporary, target, why);
   if (!why) return;
@@ -139,6 +161,9 @@ void RunDirectory::begin(RunInfo info) {
     if (std::ranges::find(info.saved, name) == info.saved.end()) info.saved.push_back(name);
   mark(info);
   remove_results();
+  remove_temporaries(path_, [&](const std::string& name) {
+    return name == "run.json" || name == "config.toml" || std::ranges::find(earlier, name) != earlier.end();
+  });
 }
 
 void RunDirectory::remove(const std::string& name) const {
@@ -173,6 +198,9 @@ void RunDirectory::remove_results() const {
   const std::string folder = path_of(kFolder), index = std::string(kFolder) + "/maps.json";
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(folder, error))) return;
+  remove_temporaries(folder, [](const fs::path& name) {
+    return name == "maps.json" || name.extension() == ".npy" || name.extension() == ".png";
+  });
   for (const std::string& map : maps_before(path_of(index)))
     for (const char* ending : {".npy", ".png"}) remove(std::string(kFolder) + "/" + map + ending);
   remove(index);
@@ -214,6 +242,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
                    {"hash", fmt::format("{:016x}", info.scene_hash)},
                    {"triangles", info.scene_triangles},
                    {"fraction", info.scene_fraction}};
+  if (!info.scene_file.empty()) json["scene"]["file"] = info.scene_file;
   json["shader"] = info.shader;
   json["config"] = {{"name", info.config}, {"hash", fmt::format("{:016x}", info.config_hash)}};
   for (const auto& [name, value] : info.memory_peaks) json["memory_peaks"][name] = value;

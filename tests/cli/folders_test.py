@@ -105,6 +105,17 @@ class RunFolders(Folders):
         self.ok(*RUN, "--out", "run")
         self.assertEqual(sorted(self.files("run")), RUN_FILES)
 
+    def test_the_next_run_removes_half_files_of_killed_writes_and_nothing_else(self):
+        self.ok(*RUN, "--heat", "--out", "run")
+        gone = subprocess.Popen(["true"])
+        gone.wait()
+        halves = [f"run/{name}.{gone.pid}.tmp" for name in ("stats.csv", "run.json", "config.toml", "image.png")]
+        kept = [f"run/notes.{gone.pid}.tmp", f"run/stats.csv.{os.getpid()}.tmp", "run/stats.csv.tmp", f"run/heat/notes.txt.{gone.pid}.tmp"]
+        for name in [*halves, *kept, f"run/heat/rays.npy.{gone.pid}.tmp"]:
+            self.write(name, "half")
+        self.ok(*RUN, "--out", "run")
+        self.assertEqual(sorted(self.files("run")), sorted([*RUN_FILES, "heat", *(name[4:] for name in kept)]))
+
     def test_of_two_runs_into_one_folder_the_second_is_refused_until_the_first_is_gone(self):
         first = self.begin("run", *LONG, "--out", "run")
         self.expect(2, ["another process writes its results into this folder", ADVICE], *RUN, "--out", "run")

@@ -22,6 +22,7 @@ class CommandLines(GlintTest):
                 ("run b/a.shader_test", "end in .shader_test"),
                 ("run b/nothing", "this file has no ending that says what it is"),
                 ("run ..", "this is a folder"),
+                ("run nosuch.toml", "nosuch.toml: error: cannot read the file", "name a TOML file that exists and that you may read"),
                 ("run WKNDD", "unknown scene 'WKNDD'", "did you mean 'WKND'?"),
                 ("compile -D =3 a.comp", "--define has no macro's name in ''"),
                 ("compile -D 1x a.comp", "--define has no macro's name in '1x'")]:

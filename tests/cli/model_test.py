@@ -34,6 +34,17 @@ class Model(GlintTest):
         for name in ("mwp", "cwp", "memory_latency", "bound: DRAM bus", "R2"):
             self.assertIn(name, done.stdout)
 
+    def test_runs_of_scene_files_are_modelled_where_their_file_is(self):
+        self.write("t.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n")
+        cycles = self.simulate("t.obj", "t")["gpu"]["cycles"]["value"]
+        done = self.glint("model", "t")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(float(self.table("t/models.csv")[0]["cycles"]), cycles)
+        self.write("t.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1.5 0\nf 1 2 3\n")
+        self.expect(2, ["t/run.json", "the file has changed since"], "model", "t")
+        (self.folder / "t.obj").unlink()
+        self.expect(2, ["the file of the run's scene, 't.obj', is not here", "from the folder that the run was called from"], "model", "t")
+
     def test_statistics_alone_need_no_scene(self):
         self.simulate("WKND_SH", "one")
         done = self.glint("model", "one", "--statistics-only", "-o", "-")

@@ -40,6 +40,18 @@ double fact(const report::RunRecord& run, const std::string& directory, const st
                   "the interval model takes runs of scenes; --statistics-only leaves it out");
 }
 
+// Returns the name or the file of a run's scene.
+std::string scene_of(const report::RunRecord& run, const std::string& directory) {
+  const std::string file = run.text("scene.file");
+  if (file.empty()) return run.text("scene.name");
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed))
+    throw UserError({directory + "/run.json"},
+                    fmt::format("the file of the run's scene, '{}', is not here", file),
+                    "call `glint model` from the folder that the run was called from");
+  return file;
+}
+
 // Returns the job of the launch that a run made.
 pipeline::RenderJob job_of(const Session& session, const ModelOptions& options, const report::RunRecord& run,
                            const std::string& directory) {
@@ -52,13 +64,14 @@ pipeline::RenderJob job_of(const Session& session, const ModelOptions& options, 
     job.frame.*p.field = uint32_t(p.is_optional ? run.fact(std::string(p.key)).value_or(0)
                                                 : fact(run, directory, std::string(p.key)));
   job.shader_dir = session.resources.shader_dir(std::string(workload.folder));
-  job.scene = scenes::load_scene(run.text("scene.name"), {options.assets, false, {}});
+  job.scene = scenes::load_scene(scene_of(run, directory), {options.assets, false, {}});
   scenes::override_scene(job.scene, run.texts_in("overrides"));
   if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))
     throw UserError(
         {directory + "/run.json"},
         fmt::format("the run's scene is '{}', and here it is '{}'", run.text("scene.form"), job.scene.form),
-        "--assets names the folder that the run was given");
+        run.text("scene.file").empty() ? "--assets names the folder that the run was given"
+                                       : "the file has changed since, or the run had --instancing");
   return job;
 }
 

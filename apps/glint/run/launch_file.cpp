@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
-#include <string_view>
-
-#define TOML_EXCEPTIONS 1
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <toml++/toml.h>
+#include <string_view>
 
 #include "apps/glint/options/resources.h"
+#include "base/toml_text.h"
 #include "pipeline/description/value.h"
 
 namespace glint::app {
@@ -52,13 +50,7 @@ class Reader {
   explicit Reader(const std::string& path) : path_(path) {}
 
   LaunchFile run() {
-    toml::table root;
-    try {
-      root = toml::parse_file(path_);
-    } catch (const toml::parse_error& error) {
-      throw UserError({path_, int(error.source().begin.line), int(error.source().begin.column)},
-                      std::string(error.description()));
-    }
+    const toml::table root = toml_of_file(path_);
     reject_others(root, {"kernel", "entry", "grid", "block", "shared_bytes", "contract", "argument"},
                   "a launch");
     LaunchFile out;

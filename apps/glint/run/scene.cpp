@@ -89,6 +89,7 @@ std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options
 
 report::RunInfo describe_run(const Session& session, const SceneOptions& options, const LaunchOptions& launch,
                              const pipeline::RenderJob& job) {
+  if (scenes::names_scene_file(options.scene)) info.scene_file = options.scene;
   report::RunInfo info = new_run_info(session, job.gpu, launch.config, launch.mode);
   info.scene = job.scene.name;
   info.scene_form = job.scene.form;
