@@ -179,8 +179,30 @@ std::vector<SceneInfo> scene_list() {
   return list;
 }
 
+namespace {
+
+// Gives each material without a name the name of the models that have it, where they all have one name.
+void name_materials(Scene& scene) {
+  std::vector<const Model*> users(scene.materials.size());  // the last model seen that has the material
+  std::vector<bool> is_shared(scene.materials.size());
+  for (const Model& model : scene.models)
+    for (const Vertex& vertex : model.vertices) {
+      const Model*& user = users[size_t(vertex.material)];
+      if (user == &model) continue;
+      if (user && user->name != model.name) is_shared[size_t(vertex.material)] = true;
+      user = &model;
+    }
+  scene.material_names.resize(scene.materials.size());
+  for (size_t i = 0; i < users.size(); ++i)
+    if (scene.material_names[i].empty() && users[i] && !is_shared[i])
+      scene.material_names[i] = users[i]->name;
+}
+
+}  // namespace
+
 Scene load_scene(const std::string& name, const LoadOptions& options) {
   Scene scene = names_scene_file(name) ? load_scene_file(name, options) : build_scene(name, options);
+  name_materials(scene);
   if (options.instancing) share_copies(scene);
   return scene;
 }

@@ -94,7 +94,7 @@ struct Scene {
   std::vector<Model> models;
   std::vector<Instance> instances;  // empty: every model stands once, in world coordinates
   std::vector<Material> materials;
-  std::vector<std::string> material_names;  // of the first materials; empty where a file gives no name
+  std::vector<std::string> material_names;  // of each material; empty where nothing names it
   std::vector<Texture> textures;
   Camera camera;
   bool alpha_test = false;          // Triangle hit groups have the any-hit alpha shader.

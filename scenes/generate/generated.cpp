@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace glint::scenes {
 
-int32_t Generator::textured(Texture texture) {
+int32_t Generator::textured(std::string name, Texture texture) {
   scene_.textures.push_back(std::move(texture));
-  const int32_t index = material(lambertian(1, 1, 1));
+  const int32_t index = material(std::move(name), lambertian(1, 1, 1));
   scene_.materials.back().texture = int32_t(scene_.textures.size() - 1);
   return index;
 }

@@ -18,13 +18,14 @@ class Generator {
     scene.form = "built-in";
   }
 
-  int32_t material(const Material& material) {
-    scene_.materials.push_back(material);
-    return int32_t(scene_.materials.size() - 1);
+  // Add a material and return its index. Materials without a name get the one of their models.
+  int32_t material(std::string name, const Material& material) {
+    return add_material(scene_, std::move(name), material);
   }
-  int32_t color(float r, float g, float b) { return material(lambertian(r, g, b)); }
-  // Adds a white material that shows `texture`, and returns its index.
-  int32_t textured(Texture texture);
+  int32_t color(std::string name, float r, float g, float b) {
+    return material(std::move(name), lambertian(r, g, b));
+  }
+  int32_t textured(std::string name, Texture texture);  // white, with the texture
 
   // Calls make(model) and takes the model into the scene.
   template <class Make>

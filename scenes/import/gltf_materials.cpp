@@ -113,17 +113,10 @@ class MaterialReader {
 std::vector<int32_t> add_gltf_materials(Scene& scene, const tinygltf::Model& file, const std::string& path) {
   MaterialReader reader(scene, file, path);
   std::vector<int32_t> indices;
-  const auto add = [&](const Material& material) {
-    indices.push_back(int32_t(scene.materials.size()));
-    scene.materials.push_back(material);
-  };
-  for (const tinygltf::Material& m : file.materials) {
-    add(reader.read(m));
-    scene.material_names.resize(scene.materials.size());
-    scene.material_names.back() = m.name;
-  }
+  for (const tinygltf::Material& m : file.materials)
+    indices.push_back(add_material(scene, m.name, reader.read(m)));
   // Choice: a mesh without a material is grey, as in OBJ files without a library; glTF's default is white.
-  add(lambertian(0.7f, 0.7f, 0.7f));
+  indices.push_back(add_material(scene, "", lambertian(0.7f, 0.7f, 0.7f)));
   return indices;
 }
 

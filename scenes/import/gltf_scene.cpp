@@ -110,10 +110,9 @@ class Nodes {
     if (scene_.instances.empty()) throw UserError({path_}, "its scene has no triangles");
     if (has_lamp_) {
       const float radius = std::max(kLampSize * extent(), 1e-6f);
-      scene_.materials.push_back(diffuse_light(kLampColor, kLampColor, kLampColor));
+      const int32_t material = add_material(scene_, "", diffuse_light(kLampColor, kLampColor, kLampColor));
       scene_.instances.push_back({uint32_t(scene_.models.size()), kIdentity});
-      scene_.models.push_back(
-          make_sphere("lamp", scene_.camera.light_position, radius, int32_t(scene_.materials.size()) - 1));
+      scene_.models.push_back(make_sphere("lamp", scene_.camera.light_position, radius, material));
       scene_.camera.light_radius = radius;
     }
     const auto glows = [&](const Material& m) { return m.model == MaterialModel::DiffuseLight; };

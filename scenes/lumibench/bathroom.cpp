@@ -115,7 +115,8 @@ void furniture(Generator& generator, int32_t wood, int32_t white, int32_t chrome
 }
 
 void small_things(Generator& generator, int32_t dark, int32_t chrome, int32_t light, int32_t socket) {
-  const int32_t towel = generator.color(0.75f, 0.35f, 0.25f), glass = generator.color(0.36f, 0.3f, 0.24f);
+  const int32_t towel = generator.color("towel", 0.75f, 0.35f, 0.25f),
+                glass = generator.color("glass", 0.36f, 0.3f, 0.24f);
   for (uint32_t k = 0; k < 5; ++k) {
     const bool hangs = k < 3;
     const Vec3 place = hangs ? Vec3{15.8f, 11, -10 + 5 * float(k)} : Vec3{-2 + 7 * float(k - 3), 0.3f, -11};
@@ -156,24 +157,28 @@ void small_things(Generator& generator, int32_t dark, int32_t chrome, int32_t li
 
 void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
-  const int32_t wood = generator.material(paint(196, 137, 88)), dark = generator.material(paint(14, 6, 3));
-  const int32_t wall = generator.material(paint(226, 243, 227)), white = generator.color(0.8f, 0.8f, 0.8f);
-  const int32_t chrome = generator.material(metallic(0.73f, 0.73f, 0.73f, 0));
-  const int32_t socket = generator.material(paint(164, 150, 134)),
-                light = generator.material(diffuse_light(15, 15, 15));
-  generator.model("room",
-                  [&](Model& m) { room(m, generator.material(paint(44, 26, 12)), light, chrome, wall); });
+  const int32_t wood = generator.material("wood", paint(196, 137, 88)),
+                dark = generator.material("dark", paint(14, 6, 3));
+  const int32_t wall = generator.material("wall", paint(226, 243, 227)),
+                white = generator.color("white", 0.8f, 0.8f, 0.8f);
+  const int32_t chrome = generator.material("chrome", metallic(0.73f, 0.73f, 0.73f, 0));
+  const int32_t socket = generator.material("socket", paint(164, 150, 134)),
+                light = generator.material("light", diffuse_light(15, 15, 15));
+  generator.model("room", [&](Model& m) {
+    room(m, generator.material("floor", paint(44, 26, 12)), light, chrome, wall);
+  });
   furniture(generator, wood, white, chrome);
   small_things(generator, dark, chrome, light, socket);
   for (uint32_t k = 0; k < 3; ++k)
     generator.model("plant", [&](Model& m) {
       add_bush(m,
                upright({-13.5f + 0.6f * float(k), 11 - 3.2f * float(k), -20 + 2.5f * float(k)}, {2, 2.4f, 2}),
-               9'000, generator.color(0.2f, 0.4f, 0.12f), 0.4f, k);
+               9'000, generator.color("plant", 0.2f, 0.4f, 0.12f), 0.4f, k);
     });
   generator.model("rug", [&](Model& m) {
     const auto flat = [](float, float) { return 0.05f; };
-    add_grass(m, {-2, -6}, {9, 5}, flat, 0.5f, generator.rest(), generator.color(0.7f, 0.65f, 0.5f), 5);
+    add_grass(m, {-2, -6}, {9, 5}, flat, 0.5f, generator.rest(), generator.color("rug", 0.7f, 0.65f, 0.5f),
+              5);
   });
   scene.note =
       "The scene is a procedural bathroom in the original's room, with its triangle count (423,821) and "

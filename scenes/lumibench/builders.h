@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <vector>
+#include <string>
 
 #include "scenes/scene.h"
 
@@ -26,17 +26,22 @@ Scene build_park(const LoadOptions& options);
 Scene build_car(const LoadOptions& options);
 Scene build_robot(const LoadOptions& options);
 
-// Returns the Cornell box of edge 555 with its four materials: 24 vertices and 12 triangles, open towards +z.
+// Returns the Cornell box of edge 555: 24 vertices and 12 triangles, open towards +z. The first four
+// materials of its scene are those of add_cornell_materials().
 Model make_cornell_box();
-// Returns the box's materials: 0 red (right), 1 green (left), 2 white, 3 light.
-std::vector<Material> cornell_materials();
+// Appends the box's materials: 0 red (right), 1 green (left), 2 white, 3 light.
+void add_cornell_materials(Scene& scene);
 
 // Return stand-ins for meshes that cannot be redistributed, in the coordinates of the originals before
 // placement.
 Model make_bunny_stand_in(int32_t material);   // about 144,000 triangles; feet at y = 0
 Model make_statue_stand_in(int32_t material);  // about 449,000 triangles; height about 600
-// Returns a two-masted schooner of about 6,255 triangles, and appends its 11 materials to `materials`.
-Model make_schooner(std::vector<Material>& materials);
+// Returns a two-masted schooner of about 6,255 triangles, and appends its 11 materials to the scene.
+Model make_schooner(Scene& scene);
+
+// Appends a material to the scene and returns its index. Without a name it gets the one of its models, when
+// the scene is complete (load_scene()).
+int32_t add_material(Scene& scene, std::string name, const Material& material);
 
 Material lambertian(float r, float g, float b);
 Material metallic(float r, float g, float b, float fuzziness);

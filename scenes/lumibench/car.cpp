@@ -27,10 +27,10 @@ class Workshop {
                                             Pattern::Planks};
     const float r = random_.between(0.2f, 0.9f), g = random_.between(0.15f, 0.6f),
                 b = random_.between(0.1f, 0.5f);
-    if (made_ >= kTextures) return generator_.color(r, g, b);
+    if (made_ >= kTextures) return generator_.color("", r, g, b);
     const uint32_t seed = made_++;
     return generator_.textured(
-        paint_texture(kPatterns[seed % 4], {r, g, b}, kTextureSide, kTextureSide, seed));
+        "", paint_texture(kPatterns[seed % 4], {r, g, b}, kTextureSide, kTextureSide, seed));
   }
   Random& random() { return random_; }
 

@@ -1,6 +1,7 @@
 // Builds CRNVL, a fairground with a big wheel, a carousel, tents and strings of lamps, as one structure.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <fmt/format.h>
 
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
@@ -133,7 +134,8 @@ void generate(Scene& scene, const LoadOptions& options) {
   for (uint32_t k = 0; k < 35; ++k) {  // as many materials as the original has
     const float r = random.between(0.1f, 0.95f), g = random.between(0.1f, 0.9f),
                 b = random.between(0.1f, 0.9f);
-    fair.colors.push_back(k % 5 ? generator.color(r, g, b) : generator.color(0.9f, 0.9f, 0.86f));
+    fair.colors.push_back(k % 5 ? generator.color(fmt::format("paint_{}", k), r, g, b)
+                                : generator.color(fmt::format("white_{}", k), 0.9f, 0.9f, 0.86f));
   }
   build_fair(fair);
   build_coaster(fair);

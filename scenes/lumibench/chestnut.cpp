@@ -59,9 +59,10 @@ void generate(Scene& scene, const LoadOptions& options) {
   constexpr uint64_t kTriangles = 313'000;
   constexpr uint64_t kGround = 2'000;
   Generator generator(scene, options, kTriangles);
-  const int32_t bark = generator.textured(paint_texture(Pattern::Bark, {0.45f, 0.38f, 0.31f}, 512, 512, 1));
-  const int32_t leaves = generator.textured(paint_leaf({0.35f, 0.5f, 0.15f}, 512, 2));
-  const int32_t ground = generator.color(0.8f, 0.8f, 0.8f);
+  const int32_t bark =
+      generator.textured("bark", paint_texture(Pattern::Bark, {0.45f, 0.38f, 0.31f}, 512, 512, 1));
+  const int32_t leaves = generator.textured("leaves", paint_leaf({0.35f, 0.5f, 0.15f}, 512, 2));
+  const int32_t ground = generator.color("ground", 0.8f, 0.8f, 0.8f);
   generator.model("chestnut", [&](Model& model) {
     add_tree(model, model,
              {.foot = {20, -12, -75},

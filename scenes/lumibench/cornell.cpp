@@ -37,9 +37,11 @@ Model make_cornell_box() {
   return box;
 }
 
-std::vector<Material> cornell_materials() {
-  return {lambertian(0.65f, 0.05f, 0.05f), lambertian(0.12f, 0.45f, 0.15f), lambertian(0.73f, 0.73f, 0.73f),
-          diffuse_light(15, 15, 15)};
+void add_cornell_materials(Scene& scene) {
+  add_material(scene, "right_wall", lambertian(0.65f, 0.05f, 0.05f));
+  add_material(scene, "left_wall", lambertian(0.12f, 0.45f, 0.15f));
+  add_material(scene, "white", lambertian(0.73f, 0.73f, 0.73f));
+  add_material(scene, "light", diffuse_light(15, 15, 15));
 }
 
 Scene build_cornell(const LoadOptions&) {
@@ -48,7 +50,7 @@ Scene build_cornell(const LoadOptions&) {
   scene.form = "built-in";
   scene.note = "The scene is the Cornell box alone, Glint's own small scene; LumiBench has no such scene.";
   scene.models.push_back(make_cornell_box());
-  scene.materials = cornell_materials();
+  add_cornell_materials(scene);
   scene.camera = {.eye = {278, 278, 800},
                   .target = {278, 278, 0},
                   .field_of_view = 40,

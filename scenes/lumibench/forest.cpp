@@ -48,7 +48,7 @@ float ground(float x, float z) {
 void hiker(Generator& generator, const Vec3& feet) {
   const auto part = [&](const char* name, const Vec3& at, const Vec3& size, uint64_t triangles,
                         const Material& material) {
-    const int32_t index = generator.material(material);
+    const int32_t index = generator.material(name, material);
     generator.model(name,
                     [&](Model& m) { add_ball(m, upright(feet + at, size), triangles, index, 0.15f, 2); });
   };
@@ -61,10 +61,11 @@ void hiker(Generator& generator, const Vec3& feet) {
 }
 
 void plants(Generator& generator, Random& random) {
-  const int32_t bark = generator.material(paint(142, 85, 47)),
-                leaves[] = {generator.material(bush_color(0)), generator.material(bush_color(0.5f)),
-                            generator.material(bush_color(1))};
-  const int32_t petals = generator.material(paint(212, 207, 207));
+  const int32_t bark = generator.material("bark", paint(142, 85, 47)),
+                leaves[] = {generator.material("young_leaves", bush_color(0)),
+                            generator.material("leaves", bush_color(0.5f)),
+                            generator.material("old_leaves", bush_color(1))};
+  const int32_t petals = generator.material("petals", paint(212, 207, 207));
   for (uint32_t k = 0; k < 86; ++k)
     generator.model("Mesh", [&](Model& m) {
       const float depth = 24 + 1.5f * float(k), side = k % 2 ? 1.0f : -1.0f;
@@ -86,7 +87,7 @@ void plants(Generator& generator, Random& random) {
       const float x = -26 + (0.08f + side * random.between(0.03f, 0.4f)) * depth,
                   size = random.between(0.4f, 1);
       add_bush(m, upright({x, ground(x, z) + 0.5f * size, z}, {size, size * 0.9f, size}), 7'400,
-               generator.material(bush_color(random.next())), 0.16f, k);
+               generator.material("bush", bush_color(random.next())), 0.16f, k);
     });
   for (uint32_t k = 0; k < 15; ++k)
     generator.model("FlowerParticles", [&](Model& m) {
@@ -102,8 +103,9 @@ void generate(Scene& scene, const LoadOptions& options) {
   Random random(291);
   plants(generator, random);
   hiker(generator, {-25.2f, ground(-25.2f, 52), 52});
-  const int32_t cloud = generator.color(0.8f, 0.8f, 0.8f), far = generator.material(paint(232, 189, 26)),
-                near = generator.material(paint(220, 139, 27));
+  const int32_t cloud = generator.color("cloud", 0.8f, 0.8f, 0.8f),
+                far = generator.material("far_hills", paint(232, 189, 26)),
+                near = generator.material("near_hills", paint(220, 139, 27));
   for (uint32_t k = 0; k < 33; ++k)
     generator.model("CLOUDS", [&](Model& m) {
       const float x = -330 + 28 * float(k) + random.between(-10, 10), y = random.between(120, 230),

@@ -60,8 +60,10 @@ void tail(Generator& generator, const Frame& view, int32_t fur, int32_t tip) {
 void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
   const Frame view = in_view(scene.camera, 11);
-  const int32_t fur = generator.color(0.8f, 0.36f, 0.1f), white = generator.color(0.85f, 0.82f, 0.78f);
-  const int32_t dark = generator.color(0.05f, 0.04f, 0.04f), stem = generator.color(0.2f, 0.42f, 0.15f);
+  const int32_t fur = generator.color("fur", 0.8f, 0.36f, 0.1f),
+                white = generator.color("white", 0.85f, 0.82f, 0.78f);
+  const int32_t dark = generator.color("dark", 0.05f, 0.04f, 0.04f),
+                stem = generator.color("stem", 0.2f, 0.42f, 0.15f);
   head(generator, view, fur, dark);
   tail(generator, view, fur, white);
   Random random(13);

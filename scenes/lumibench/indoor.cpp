@@ -35,11 +35,10 @@ Model load_bunny(Scene& scene, const LoadOptions& options) {
   scene.form = "stand-in";
   if (options.assets.empty()) {
     scene.form = "built-in";
-    scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
     scene.note =
         "The mesh is a procedural bunny with the original's size and place and about its triangle count "
         "(144,046).";
-    return make_bunny_stand_in(int32_t(scene.materials.size() - 1));
+    return make_bunny_stand_in(add_material(scene, "bunny", lambertian(0.7f, 0.7f, 0.7f)));
   }
   const std::string path =
       find_asset(options.assets, scene.name,
@@ -59,11 +58,10 @@ Model load_statue(Scene& scene, const LoadOptions& options) {
   scene.form = "stand-in";
   if (options.assets.empty()) {
     scene.form = "built-in";
-    scene.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
     scene.note =
         "The mesh is a procedural winged statue with the original's size and place and about its triangle "
         "count (448.9K).";
-    return make_statue_stand_in(int32_t(scene.materials.size() - 1));
+    return make_statue_stand_in(add_material(scene, "statue", lambertian(0.7f, 0.7f, 0.7f)));
   }
   const std::string path =
       find_asset(options.assets, scene.name, {"assets/models/lucy.obj", "models/lucy.obj", kSmallLucy});
@@ -87,7 +85,7 @@ Model load_statue(Scene& scene, const LoadOptions& options) {
 Scene build_bunny(const LoadOptions& options) {
   Scene scene;
   scene.name = "BUNNY";
-  scene.materials = cornell_materials();
+  add_cornell_materials(scene);
   scene.camera = indoor_camera(800, 40, 400);
   scene.models.push_back(make_cornell_box());
   Model bunny = load_bunny(scene, options);
@@ -99,10 +97,10 @@ Scene build_bunny(const LoadOptions& options) {
 Scene build_mirror_box(const LoadOptions& options) {
   Scene scene;
   scene.name = "REF";
-  scene.materials = cornell_materials();
+  add_cornell_materials(scene);
   scene.materials[0] = metallic(0.65f, 0.05f, 0.05f, 0);
   scene.materials[1] = metallic(0.12f, 0.45f, 0.15f, 0);
-  scene.materials.push_back(dielectric(1.5f));
+  add_material(scene, "glass", dielectric(1.5f));
   scene.camera = indoor_camera(350, 78, 280);
   scene.models.push_back(make_cornell_box());
   scene.models.push_back(make_sphere("glass_sphere", {425, 165, -147.5f}, 80, 4));

@@ -51,8 +51,9 @@ void boat(Model& model, const Frame& f, int32_t wood) {
 }
 
 void fleet(Generator& generator, const Scene& scene) {
-  const int32_t wood = generator.material(paint(150, 111, 51)), sail = generator.color(0.8f, 0.76f, 0.65f);
-  const int32_t rope = generator.color(0.4f, 0.33f, 0.2f);
+  const int32_t wood = generator.material("wood", paint(150, 111, 51)),
+                sail = generator.color("sail", 0.8f, 0.76f, 0.65f);
+  const int32_t rope = generator.color("rope", 0.4f, 0.33f, 0.2f);
   const Frame view = in_view_upright(scene.camera, 0);
   for (uint32_t k = 0; k < 4; ++k) {
     const float depth = 7.5f + 2.3f * float(k), x = k % 2 ? 0.9f + 0.3f * float(k) : -1.1f;
@@ -92,8 +93,9 @@ float cliffs(float x, float z, float shift) {
 
 void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
-  const int32_t water = generator.material(metallic(18.0f / 256, 109.0f / 256, 105.0f / 256, 0.6f));
-  const int32_t chalk = generator.material(paint(250, 250, 245)), foam = generator.color(0.8f, 0.8f, 0.8f);
+  const int32_t water = generator.material("water", metallic(18.0f / 256, 109.0f / 256, 105.0f / 256, 0.6f));
+  const int32_t chalk = generator.material("chalk", paint(250, 250, 245)),
+                foam = generator.color("foam", 0.8f, 0.8f, 0.8f);
   fleet(generator, scene);
   generator.model("water", [&](Model& m) { add_ground(m, {-60, -25}, {8, 45}, waves, 60'000, water); });
   for (uint32_t k = 0; k < 3; ++k)

@@ -93,8 +93,7 @@ class StandIns {
       for (const std::string& part : rule.parts)
         if (name.find(part) != std::string::npos) {
           if (!materials_.contains(name)) {
-            materials_[name] = int32_t(scene_.materials.size());
-            scene_.materials.push_back(rule.material);
+            materials_[name] = add_material(scene_, name, rule.material);
           }
           return materials_[name];
         }
@@ -175,10 +174,10 @@ void trees(Generator& generator, int32_t wood_material, int32_t leaf_material) {
 void generate(Scene& scene, const LoadOptions& options) {
   constexpr uint64_t kTriangles = 6'000'000;
   Generator generator(scene, options, kTriangles);
-  const int32_t leaf = generator.material(kLeaf), rock = generator.material(kRock),
-                soil = generator.material(kSoil);
-  const int32_t wood = generator.material(kWood), skin = generator.material(kSkin),
-                metal = generator.material(kCar);
+  const int32_t leaf = generator.material("leaf", kLeaf), rock = generator.material("rock", kRock),
+                soil = generator.material("soil", kSoil);
+  const int32_t wood = generator.material("wood", kWood), skin = generator.material("skin", kSkin),
+                metal = generator.material("metal", kCar);
   trees(generator, wood, leaf);
   for (uint32_t k = 0; k < 2; ++k) {
     generator.model("mountain", [&](Model& m) {
@@ -223,7 +222,7 @@ Scene build_park(const LoadOptions& options) {
                   .field_of_view = 30,
                   .aperture = 0.0001f,
                   .focus_distance = 2};
-  scene.materials.push_back(lambertian(0.5f, 0.5f, 0.5f));
+  add_material(scene, "ground_sphere", lambertian(0.5f, 0.5f, 0.5f));
   scene.models.push_back(make_sphere("ground_sphere", {0, -1000, 0}, 1000, 0));
   options.assets.empty() ? generate(scene, options) : load(scene, options);
   return scene;

@@ -1,5 +1,7 @@
 // Builds PARTY, a harbour town with boats, boxes, meters and cables: hundreds of structures of few triangles.
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
 #include "scenes/import/asset_folder.h"
@@ -113,10 +115,11 @@ void generate(Scene& scene, const LoadOptions& options) {
   for (int k = 0; k < 14; ++k) {
     const float r = random.between(0.15f, 0.85f), g = random.between(0.12f, 0.7f),
                 b = random.between(0.1f, 0.6f);
-    palette.colors.push_back(generator.color(r, g, b));
+    palette.colors.push_back(generator.color(fmt::format("paint_{}", k), r, g, b));
   }
-  const int32_t water = generator.color(0.1f, 0.2f, 0.25f), plank = generator.color(0.4f, 0.28f, 0.18f),
-                steam = generator.color(0.8f, 0.8f, 0.8f);
+  const int32_t water = generator.color("water", 0.1f, 0.2f, 0.25f),
+                plank = generator.color("plank", 0.4f, 0.28f, 0.18f),
+                steam = generator.color("steam", 0.8f, 0.8f, 0.8f);
   const Frame town = in_view_upright(scene.camera, 0);
   houses_and_boats(generator, town, palette, random);
   small_things(generator, town, palette, random);

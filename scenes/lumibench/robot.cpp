@@ -76,9 +76,10 @@ void cables(Generator& generator, const Frame& robot, std::span<const int32_t> p
 
 void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
-  const int32_t paint[] = {generator.color(0.65f, 0.62f, 0.55f), generator.color(0.25f, 0.26f, 0.28f),
-                           generator.color(0.6f, 0.3f, 0.1f), generator.color(0.1f, 0.25f, 0.35f),
-                           generator.color(0.05f, 0.05f, 0.05f)};
+  const int32_t paint[] = {
+      generator.color("shell", 0.65f, 0.62f, 0.55f), generator.color("steel", 0.25f, 0.26f, 0.28f),
+      generator.color("copper", 0.6f, 0.3f, 0.1f), generator.color("panel", 0.1f, 0.25f, 0.35f),
+      generator.color("rubber", 0.05f, 0.05f, 0.05f)};
   const Frame robot = in_view_upright(scene.camera, 1.05f).inner({0.02f, 0.07f, 0}, {1, 1, 1}, 20);
   head(generator, robot, paint);
   torso(generator, robot, paint);

@@ -19,22 +19,21 @@ struct Shipyard {
   Model ship;
   int32_t spar, sail, planks, dark_planks, rope, window, dark_wood, barrel, old_barrel, carriage, cannon;
 
-  explicit Shipyard(std::vector<Material>& m) {
-    const auto add = [&m](float r, float g, float b) {
-      m.push_back(lambertian(r, g, b));
-      return int32_t(m.size() - 1);
+  explicit Shipyard(Scene& scene) {
+    const auto add = [&scene](const char* name, float r, float g, float b) {
+      return add_material(scene, name, lambertian(r, g, b));
     };
-    spar = add(0.37f, 0.30f, 0.22f);
-    sail = add(0.88f, 0.84f, 0.76f);
-    planks = add(0.62f, 0.47f, 0.31f);
-    dark_planks = add(0.27f, 0.19f, 0.12f);
-    rope = add(0.76f, 0.66f, 0.42f);
-    window = add(0.95f, 0.80f, 0.40f);
-    dark_wood = add(0.17f, 0.12f, 0.07f);
-    barrel = add(0.44f, 0.34f, 0.22f);
-    old_barrel = add(0.36f, 0.33f, 0.27f);
-    carriage = add(0.38f, 0.24f, 0.14f);
-    cannon = add(0.16f, 0.16f, 0.17f);
+    spar = add("spar", 0.37f, 0.30f, 0.22f);
+    sail = add("sail", 0.88f, 0.84f, 0.76f);
+    planks = add("planks", 0.62f, 0.47f, 0.31f);
+    dark_planks = add("dark_planks", 0.27f, 0.19f, 0.12f);
+    rope = add("rope", 0.76f, 0.66f, 0.42f);
+    window = add("window", 0.95f, 0.80f, 0.40f);
+    dark_wood = add("dark_wood", 0.17f, 0.12f, 0.07f);
+    barrel = add("barrel", 0.44f, 0.34f, 0.22f);
+    old_barrel = add("old_barrel", 0.36f, 0.33f, 0.27f);
+    carriage = add("carriage", 0.38f, 0.24f, 0.14f);
+    cannon = add("cannon", 0.16f, 0.16f, 0.17f);
   }
   void spar_between(const Vec3& a, const Vec3& b, float ra, float rb, uint32_t sides) {
     const Ring rings[] = {{0, ra}, {0.5f, 0.5f * (ra + rb) * 1.08f}, {1, rb}};
@@ -259,8 +258,8 @@ void build_deck_houses(Shipyard& yard) {
 
 }  // namespace
 
-Model make_schooner(std::vector<Material>& materials) {
-  Shipyard yard(materials);
+Model make_schooner(Scene& scene) {
+  Shipyard yard(scene);
   yard.ship.name = "schooner";
   build_hull(yard);
   build_spars(yard);

@@ -14,7 +14,7 @@ Scene build_ship(const LoadOptions& options) {
   scene.camera = {.eye = {378, 278, 500}, .target = {178, 278, 0}, .field_of_view = 50};
   Model ship;
   if (options.assets.empty()) {
-    ship = make_schooner(scene.materials);
+    ship = make_schooner(scene);
     scene.form = "built-in";
     scene.note =
         "The scene is a procedural schooner with the original's bounds and number of materials, and about "

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "scenes/generate/generated.h"
 #include "scenes/generate/paintings.h"
@@ -50,7 +51,7 @@ int32_t stand_in_material(Scene& scene, const std::string& name, const std::file
   for (size_t k = 0; k < scene.materials.size(); ++k)
     if (scene.textures[size_t(scene.materials[k].texture)].name == file) return int32_t(k);
   scene.textures.push_back(load_texture((textures / (std::string(file) + ".png")).string()));
-  scene.materials.push_back(lambertian(1, 1, 1));
+  add_material(scene, file, lambertian(1, 1, 1));
   scene.materials.back().texture = int32_t(scene.textures.size() - 1);
   return int32_t(scene.materials.size() - 1);
 }
@@ -198,6 +199,7 @@ struct Hall {
 void generate(Scene& scene, const LoadOptions& options) {
   constexpr uint64_t kTriangles = 262'267;
   static constexpr Pattern kPatterns[] = {Pattern::Bricks, Pattern::Bricks, Pattern::Planks, Pattern::Panels};
+  static constexpr const char* kNames[] = {"bricks", "bricks", "planks", "panels"};
   static constexpr Vec3 kCloth[] = {{0.6f, 0.1f, 0.1f}, {0.1f, 0.3f, 0.5f}, {0.15f, 0.4f, 0.15f}};
   Generator generator(scene, options, kTriangles);
   Hall hall{generator, {}};
@@ -205,9 +207,10 @@ void generate(Scene& scene, const LoadOptions& options) {
     const float tone = 0.5f + 0.035f * float(k % 7);
     const Vec3 stone{tone, tone * 0.92f, tone * 0.78f};
     const bool cloth = k >= 9 && k < 12;
+    const std::string name = fmt::format("{}_{}", cloth ? "cloth" : k < 4 ? kNames[k] : "stone", k);
     const Pattern pattern = cloth ? Pattern::Stripes : k < 4 ? kPatterns[k] : Pattern::Stone;
     hall.paint.push_back(
-        generator.textured(paint_texture(pattern, cloth ? kCloth[k - 9] : stone, 1024, 1024, k)));
+        generator.textured(name, paint_texture(pattern, cloth ? kCloth[k - 9] : stone, 1024, 1024, k)));
   }
   hall.side_of(-1);
   hall.side_of(1);

@@ -43,12 +43,14 @@ void girl(Generator& generator, const Frame& view) {
     generator.model(name,
                     [&](Model& m) { add_ball(m, view.inner(center, size), triangles, material, bumps, 4); });
   };
-  const int32_t skin = generator.material(paint(223, 175, 171)),
-                jacket = generator.material(paint(163, 67, 42));
-  const int32_t pants = generator.material(paint(92, 74, 101)),
-                boots = generator.material(paint(150, 106, 86));
-  const int32_t hair = generator.material(paint(108, 86, 99)), scarf = generator.material(paint(114, 76, 64));
-  const int32_t seam = generator.material(paint(92, 64, 51)), band = generator.material(paint(69, 23, 8));
+  const int32_t skin = generator.material("skin", paint(223, 175, 171)),
+                jacket = generator.material("jacket", paint(163, 67, 42));
+  const int32_t pants = generator.material("pants", paint(92, 74, 101)),
+                boots = generator.material("boots", paint(150, 106, 86));
+  const int32_t hair = generator.material("hair", paint(108, 86, 99)),
+                scarf = generator.material("scarf", paint(114, 76, 64));
+  const int32_t seam = generator.material("seam", paint(92, 64, 51)),
+                band = generator.material("band", paint(69, 23, 8));
   part("spring_body", {0, 0.42f, 0}, {0.17f, 0.21f, 0.17f}, 95'000, skin, 0.08f);
   part("spring_jacket", {0, -0.15f, 0}, {0.3f, 0.36f, 0.2f}, 120'000, jacket, 0.2f);
   part("spring_scarf", {0, 0.19f, 0.02f}, {0.2f, 0.08f, 0.18f}, 40'000, scarf, 0.4f);
@@ -85,8 +87,9 @@ float slope(float x, float z) {
 
 void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
-  const int32_t grass = generator.color(0.3f, 0.4f, 0.12f), dry = generator.color(0.55f, 0.45f, 0.2f);
-  const int32_t rock = generator.color(0.45f, 0.47f, 0.42f);
+  const int32_t grass = generator.color("grass", 0.3f, 0.4f, 0.12f),
+                dry = generator.color("dry", 0.55f, 0.45f, 0.2f);
+  const int32_t rock = generator.color("rock", 0.45f, 0.47f, 0.42f);
   girl(generator, in_view_upright(scene.camera, 4.6f));
   Random random(28);
   constexpr uint32_t kPatches = 36;

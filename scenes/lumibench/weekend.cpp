@@ -18,9 +18,9 @@ struct Spheres {
   std::mt19937 engine{kSeed};
 
   float draw() { return uniform_float(engine); }
-  void add(const Vec3& center, float radius, const Material& material) {
-    const auto index = int32_t(scene.materials.size());
-    scene.materials.push_back(material);
+  // A sphere without a name has its number as the name of both.
+  void add(const Vec3& center, float radius, const Material& material, std::string name = "") {
+    const int32_t index = add_material(scene, std::move(name), material);
     scene.models.push_back(make_sphere(fmt::format("sphere_{}", index), center, radius, index));
   }
 };
@@ -49,7 +49,7 @@ Material draw_material(Spheres& spheres, float choice) {
 
 Scene build_weekend(const LoadOptions&) {
   Spheres spheres;
-  spheres.add({0, -1000, 0}, 1000, lambertian(0.5f, 0.5f, 0.5f));
+  spheres.add({0, -1000, 0}, 1000, lambertian(0.5f, 0.5f, 0.5f), "ground");
   for (int i = -11; i < 11; ++i)
     for (int j = -11; j < 11; ++j) {
       const float choice = spheres.draw();
@@ -58,9 +58,9 @@ Scene build_weekend(const LoadOptions&) {
       const Vec3 center{x, 0.2f, z};
       if (length(center - Vec3{4, 0.2f, 0}) > 0.9f) spheres.add(center, 0.2f, draw_material(spheres, choice));
     }
-  spheres.add({0, 1, 0}, 1, dielectric(1.5f));
-  spheres.add({-4, 1, 0}, 1, lambertian(0.4f, 0.2f, 0.1f));
-  spheres.add({4, 1, 0}, 1, metallic(0.7f, 0.6f, 0.5f, 0));
+  spheres.add({0, 1, 0}, 1, dielectric(1.5f), "large_glass");
+  spheres.add({-4, 1, 0}, 1, lambertian(0.4f, 0.2f, 0.1f), "large_matte");
+  spheres.add({4, 1, 0}, 1, metallic(0.7f, 0.6f, 0.5f, 0), "large_mirror");
 
   Scene& scene = spheres.scene;
   scene.name = "WKND";

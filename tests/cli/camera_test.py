@@ -84,6 +84,18 @@ class Crop(FrameTest):
         for name in ("WKND_PT", "WKND_AO"):
             self.assertEqual(self.record(f"b/{name}")["crop"], {"x": 2, "y": 2, "frame_width": 16, "frame_height": 16})
 
+    def test_bench_changes_camera_light_and_material_of_every_workload_as_run_does(self):
+        changes = ["--fov", "30", "--eye", "278,278,700", "--light", "position=200,400,100", "--light", "radius=5", "--material", "left_wall.diffuse=0,0,1"]
+        frame = ["--size", "8x8", "--spp", "1", "--mode", "functional"]
+        done = self.glint("bench", "BUNNY_SH", "BUNNY_AO", *frame, *changes[:4], "--light", "sky=on", "--material", "left_wall.diffuse=0,0,1", "--out", "b")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.render("one", "BUNNY_SH", *frame, *changes[:4], "--light", "sky=on", "--material", "left_wall.diffuse=0,0,1")
+        self.assertEqual(self.pixels("b/BUNNY_SH"), self.pixels("one"))
+        self.assertEqual(self.record("b/BUNNY_AO")["overrides"], self.record("one")["overrides"])
+        again = [part for change in ("30", "31") for part in [self.glint("bench", "BUNNY_SH", *frame, "--fov", change, "--out", "c", "--resume").stdout]]
+        self.assertNotIn("1 of them complete", again[1])
+        self.expect(2, ["--material is 'diffuse=1,1,1'", "NAME.KEY=VALUE"], "bench", "BUNNY_SH", *frame, "--material", "diffuse=1,1,1", "--out", "d")
+
 
 OBJ = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 
@@ -159,6 +171,14 @@ class Overrides(FrameTest):
         self.render("a", "a.obj", "--size", "8x8", "--spp", "1")
         self.render("b", "a.obj", "--size", "8x8", "--spp", "1", "--material", "wood.001.model=metallic", "--light", "sky=off", "--light", "position=0,9,3")
         self.assertIn("overrides.material.wood.001.model is nothing in A and metallic in B", (lambda d: d.stdout + d.stderr)(self.glint("compare", "a", "b")))
+
+    def test_materials_of_generated_scenes_have_names(self):
+        for scene, rows in (("CORNELL", ["0 +right_wall ", "3 +light "]), ("WKND", ["0 +ground ", "1 +sphere_1 ", "484 +large_glass "]), ("SHIP", ["1 +sail "]), ("FOX", ["0 +fur "])):
+            for row in rows:
+                self.assertRegex(self.listed(scene), f"(?m)^{row}", scene)
+        self.render("a", "CORNELL", *FAST, "--size", "8x8", "--material", "white.diffuse=0.1,0.2,0.3")
+        self.render("b", "CORNELL", *FAST, "--size", "8x8", "--material", "2.diffuse=0.1,0.2,0.3")
+        self.assertEqual(self.pixels("a"), self.pixels("b"))
 
     def test_model_repeats_a_run_with_other_materials(self):
         self.render("a", "CORNELL", "--size", "8x8", "--spp", "1", "--material", "2.model=metallic", "--material", "2.fuzziness=0.5")

@@ -11,7 +11,6 @@
 
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/options/config.h"
-#include "apps/glint/options/image_size.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/options/resources.h"
 #include "apps/glint/run/launch_options.h"
@@ -42,23 +41,14 @@ uint64_t hash_of_shaders(const Resources& resources) {
   return report::fnv1a(all);
 }
 
-// Returns the frame as options of `glint run`.
-std::vector<std::string> frame_options(const scenes::RenderParams& frame) {
-  std::vector<std::string> out;
-  for (const scenes::RenderParam& p : scenes::RenderParams::params())
-    if (!p.option.empty()) out.push_back(fmt::format("{}={}", p.option, frame.*p.field));
-  return out;
-}
-
 // Returns everything that a result depends on. Two runs of the same key give the same statistics.
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const std::string text = fmt::format(
-      "config {:016x} mode {} size {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{} "
+      "config {:016x} mode {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{} "
       "stats {}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode,
-      options.crop.empty() ? options.size : options.size + " crop " + options.crop,
-      fmt::join(frame_options(options.frame), " "),
+      fmt::join(options.frame.arguments(), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
       report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
       identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "), options.stats);
@@ -88,13 +78,11 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
   std::vector<std::string> out = {"run",
                                   task.workload.name(),
                                   "--config=" + options.config,
-                                  "--size=" + options.size,
                                   "--mode=" + options.mode,
                                   fmt::format("--threads={}", options.threads),
                                   "--out=" + task.directory};
-  if (!options.crop.empty()) out.push_back("--crop=" + options.crop);
   for (const Plugin& plugin : session.plugins) out.push_back("--plugin=" + plugin.path);
-  for (const std::string& option : frame_options(options.frame)) out.push_back(option);
+  for (const std::string& option : options.frame.arguments()) out.push_back(option);
   out.push_back("--stats=" + options.stats);
   if (options.max_cycles > 0) out.push_back(fmt::format("--max-cycles={}", options.max_cycles));
   for (const std::string& option : observe_arguments(options.observe)) out.push_back(option);
@@ -109,9 +97,8 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   check_observation(options.observe, options.mode == "timing");
   check_max_cycles(options.max_cycles, options.mode == "timing");
   BenchPlan plan;
-  scenes::RenderParams frame = options.frame;
-  parse_size(options.size, frame);
-  parse_crop(options.crop, frame);
+  const scenes::RenderParams frame = options.frame.frame();
+  options.frame.overrides();  // Texts that are none of a scene are told before anything runs.
   const std::vector<std::string> names =
       options.names.empty() ? std::vector<std::string>{"lumibench"} : options.names;
   const std::vector<NamedWorkload> workloads = select_workloads(names);

@@ -7,17 +7,17 @@
 
 #include "apps/glint/bench/process_pool.h"
 #include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/frame_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/run_profile.h"
-#include "scenes/camera.h"
 
 namespace glint::app {
 
 struct BenchOptions {
   std::vector<std::string> names;  // names for select_workloads(); none: lumibench
-  std::string config = "mobile", size = "128x128", crop, mode = "timing", assets, out;
+  std::string config = "mobile", mode = "timing", assets, out;
   std::vector<std::string> settings;
-  scenes::RenderParams frame;
+  FrameOptions frame;
   uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors
   double memory = 0;                    // GB that all processes may take together; 0: what is available
   bool resume = false;

@@ -120,7 +120,7 @@ class Bench {
     print_output(
         "{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
         options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "",
-        options_.size, options_.frame.samples, options_.mode, options_.config, limits_.processes,
+        options_.frame.size, options_.frame.params.samples, options_.mode, options_.config, limits_.processes,
         plan_.directory);
     if (chosen_.empty()) return;
     print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest),
@@ -272,8 +272,6 @@ void add_bench(Command app, Session& session) {
   command.add_option("--threads", options->threads, "Threads of each process")
       .in_range(0u, 256u)
       .capture_default_str();
-  command.add_option("--size", options->size, "Image size in pixels").type_name("WxH").capture_default_str();
-  add_crop_option(command, options->crop);
   add_frame_options(command, options->frame);
   add_observe_options(command, options->observe);
   add_stats_option(command, options->stats);

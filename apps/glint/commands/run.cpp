@@ -58,29 +58,6 @@ Exit run(const Session& session, const RunOptions& options) {
   return run_scene(session, options.scene, options.launch);
 }
 
-void add_camera_options(Command command, SceneOptions& scene) {
-  command.add_option("--eye", scene.eye, "Place of the camera in world units, instead of the scene's")
-      .type_name("X,Y,Z");
-  command.add_option("--look-at", scene.look_at, "Place in the middle of the picture, instead of the scene's")
-      .type_name("X,Y,Z");
-  command.add_option("--up", scene.up, "Direction that is upwards in the picture, instead of the scene's")
-      .type_name("X,Y,Z");
-  command.add_option("--fov", scene.fov, "[degree] Vertical field of view, instead of the scene's")
-      .type_name("DEGREES");
-}
-
-void add_override_options(Command command, SceneOptions& scene) {
-  command
-      .add_option("--light", scene.light,
-                  "Change the light of the scene: sky=on|off, position=X,Y,Z, radius=LENGTH; repeatable")
-      .type_name("KEY=VALUE");
-  command
-      .add_option("--material", scene.materials,
-                  "Change a material of the scene: diffuse=R,G,B, model, fuzziness, refraction_index or "
-                  "texture=none; 'glint list materials SCENE' lists numbers and names; repeatable")
-      .type_name("NAME.KEY=VALUE");
-}
-
 void add_scene_options(Command command, RunOptions& options) {
   command
       .add_option("SCENE", options.scene.scene,
@@ -101,12 +78,6 @@ void add_scene_options(Command command, RunOptions& options) {
       .add_option("--shader-dir", options.scene.shader_dir,
                   "Folder whose shaders are used instead of the workload's built-in ones")
       .type_name("DIR");
-  command.add_option("--size", options.scene.size, "Image size in pixels")
-      .type_name("WxH")
-      .capture_default_str();
-  add_crop_option(command, options.scene.crop);
-  add_camera_options(command, options.scene);
-  add_override_options(command, options.scene);
   add_frame_options(command, options.scene.frame);
   command.add_option("--assets", options.scene.assets, "Folder that has the original scene data")
       .type_name("DIR")

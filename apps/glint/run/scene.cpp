@@ -10,7 +10,6 @@
 
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/bench/workloads.h"
-#include "apps/glint/options/image_size.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pictures/exr.h"
@@ -55,9 +54,7 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
   pipeline::RenderJob job;
   job.gpu = gpu_of(session.resources, launch);
   job.workload = workload.workload;
-  job.frame = options.frame;
-  parse_size(options.size, job.frame);
-  parse_crop(options.crop, job.frame);
+  job.frame = options.frame.frame();
   job.timing = launch.mode == "timing";
   job.no_skip = launch.no_skip;
   job.threads = launch.threads;
@@ -73,7 +70,7 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
                                                    progress.update(uint64_t(100 * part), 100);
                                                    pipe.update(uint64_t(1000 * part), 1000);
                                                  }});
-  scenes::override_scene(job.scene, options.overrides());
+  scenes::override_scene(job.scene, options.frame.overrides());
   return job;
 }
 
@@ -99,7 +96,7 @@ report::RunInfo describe_run(const Session& session, const SceneOptions& options
   info.scene_fraction = job.scene.fraction();
   info.shader = options.shader;
   info.frame = scenes::values_of(job.frame);
-  info.overrides = options.overrides();
+  info.overrides = options.frame.overrides();
   info.on_fault = exec::name_of(launch.on_fault);
   info.compact = launch.compact();
   return info;
@@ -131,29 +128,8 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
 
 }  // namespace
 
-std::vector<scenes::Override> SceneOptions::overrides() const {
-  std::vector<scenes::Override> out;
-  for (const auto& [key, value] : {std::pair("camera.eye", &eye),
-                                   {"camera.look-at", &look_at},
-                                   {"camera.up", &up},
-                                   {"camera.fov", &fov}})
-    if (!value->empty()) out.emplace_back(key, *value);
-  for (const std::string& text : light) out.push_back(scenes::light_override(text));
-  for (const std::string& text : materials) out.push_back(scenes::material_override(text));
-  return out;
-}
-
 std::string SceneOptions::given() const {
-  for (const auto& [name, is_given] : {std::pair("--exr", exr),
-                                       {"--crop", !crop.empty()},
-                                       {"--eye", !eye.empty()},
-                                       {"--look-at", !look_at.empty()},
-                                       {"--up", !up.empty()},
-                                       {"--fov", !fov.empty()},
-                                       {"--light", !light.empty()},
-                                       {"--material", !materials.empty()}})
-    if (is_given) return name;
-  return "";
+  return exr ? "--exr" : frame.given();
 }
 
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
