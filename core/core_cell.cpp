@@ -177,9 +177,13 @@ void CoreCell::finish(Cycle end) {
   stats.table_overflows += candidates.overflows;
 }
 
-uint64_t CoreCell::changes() const {
+uint64_t CoreCell::turnover() const {
   const uint64_t launched = warps_.num_launched(), ended = launched - warps_.num_resident();
-  return launched + ended + counts_.stats.rt_warps.value() + executor_.changes();
+  return launched + ended;
+}
+
+uint64_t CoreCell::changes() const {
+  return turnover() + counts_.stats.rt_warps.value() + executor_.changes();
 }
 
 void CoreCell::start_profile() {

@@ -92,6 +92,8 @@ class CoreCell final : public Cell {
   // Returns a number that grows when a warp begins, ends or is handed to the RT unit, and with what
   // exec::Executor::changes() counts. Warps that spin for ever change none of these.
   uint64_t changes() const;
+  // Returns a number that grows when a warp begins or ends.
+  uint64_t turnover() const;
   std::string describe_stall() const override;
 
   // Returns the first fault of a warp here. The cell does nothing from then on.
@@ -105,6 +107,7 @@ class CoreCell final : public Cell {
   void finish(Cycle end);
 
   exec::Executor& executor() { return executor_; }  // for listening to what retires
+  const exec::Executor& executor() const { return executor_; }
   // Returns what the core has done to global memory in the present turn, or null without other cores.
   exec::MemoryView* view() { return view_.get(); }
   const CoreStats& stats() const { return counts_.stats; }

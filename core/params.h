@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "base/params.h"
@@ -249,23 +250,6 @@ struct FenceParams {
   }
 };
 
-// Holds the number of instructions that hardware executes before a kernel's own. An H200 executes 2, which
-// read the stack pointer and the descriptor of global memory from constants, and 3 more in kernels with
-// shared memory, which find the window of that memory. With these numbers, the counts of executed
-// instructions of five kernels of 19 to 155 instructions come out exactly. The default is 0, because shaders
-// of other parts have what they need in their code.
-struct PrologueParams {
-  uint32_t instructions = 0, shared_instructions = 0;
-  static ParamList params() {
-    return {param(&PrologueParams::instructions, "instructions", "instruction",
-                  "Number of issue slots of each warp before its first instruction.", 0, 1000),
-            param(&PrologueParams::shared_instructions, "shared_instructions", "instruction",
-                  "Number of additional issue slots of each warp before its first instruction, "
-                  "when the launch has shared memory.",
-                  0, 1000)};
-  }
-};
-
 struct Params {
   uint32_t warps = 32;
   uint32_t schedulers = 4;
@@ -302,8 +286,10 @@ struct Params {
   uint64_t instruction_budget = 100'000'000;
   // Choice: this is 15 ms of a GPU. Only warps that spin are known to make so little progress for so long.
   uint64_t livelock_budget = 20'000'000;
+  // Choice: this is 15 ms of a GPU, in which it makes a whole frame. Simulating them takes minutes at most.
+  uint64_t turnover_budget = 20'000'000;
   static ParamList params() {
-    return {
+    ParamList out = {
         param(&Params::warps, "warps", "warp",
               "Largest number of resident warps of a core. Registers may limit it further.", 1, kMaxWarps),
         param(&Params::schedulers, "schedulers", "scheduler",
@@ -342,7 +328,14 @@ struct Params {
         section(&Params::shared, "shared", "Times of shared memory, which has 32 banks of 4 bytes."),
         section(&Params::fence, "fence", "Times of memory fences."),
         section(&Params::prologue, "prologue",
-                "Numbers of machine instructions that each warp executes before its first instruction."),
+                "Numbers of machine instructions that each warp executes before its first instruction.")};
+    for (auto& of_launch : launch_params()) out.push_back(std::move(of_launch));
+    return out;
+  }
+
+  // Returns the parameters of how a launch begins and ends.
+  static ParamList launch_params() {
+    return {
         param(&Params::launch_latency, "launch_latency", "cycle",
               "Cycles from the launch to the first instruction.", 0, 1'000'000),
         flag(&Params::ends_when_written, "ends_when_written",
@@ -360,7 +353,12 @@ struct Params {
         param(&Params::livelock_budget, "livelock_budget", "cycle",
               "Cycles without the end of a warp or ray and without a change in memory after which the "
               "machine is taken to spin for ever. 0: there is no limit.",
-              0, uint64_t{1} << 40)};
+              0, uint64_t{1} << 40),
+        param(
+            &Params::turnover_budget, "turnover_budget", "cycle",
+            "Cycles in which no warp begins or ends after which the launch is taken to be in a loop without "
+            "an end. 0: there is no limit.",
+            0, uint64_t{1} << 40)};
   }
 };
 

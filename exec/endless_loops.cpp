@@ -133,34 +133,29 @@ Fault EndlessLoops::fault(const World& world, const WarpContext& warp) const {
 std::string loops_around(const Image& image, uint32_t pc) {
   std::string out;
   for (const auto& [first, last] : loops_of(image, pc))
-    out +=
-        fmt::format("{}{}", out.empty() ? "it is in " : ", and that is in ", span_text(image, first, last));
+    out += fmt::format("{}{}", out.empty() ? "in " : ", which is in ", span_text(image, first, last));
   return out;
 }
 
-std::string whereabouts(const Image& image, std::span<const uint32_t> pcs) {
-  struct Line {
-    size_t num_warps = 0;
-    uint32_t pc = 0;
-  };
-  // Places are compared without their instructions.
-  const auto line_of = [&](uint32_t pc) {
-    const std::string place = image.place_of(pc);
-    return place.substr(0, place.find(" ("));
-  };
-  std::map<std::string, Line> lines;
+std::optional<BusiestLine> busiest_line(const Image& image, std::span<const uint32_t> pcs) {
+  std::map<std::string, BusiestLine> lines;
   for (const uint32_t pc : pcs) {
-    Line& line = lines[line_of(pc)];
-    line.pc = line.num_warps++ == 0 ? pc : std::min(line.pc, pc);
+    BusiestLine& line = lines[image.line_of(pc)];
+    line.pc = line.num_warps == 0 ? pc : std::min(line.pc, pc);
+    ++line.num_warps;
   }
-  if (lines.empty()) return "";
+  if (lines.empty()) return {};
   const auto most = std::max_element(lines.begin(), lines.end(), [](const auto& a, const auto& b) {
     return a.second.num_warps != b.second.num_warps ? a.second.num_warps < b.second.num_warps
                                                     : a.second.pc > b.second.pc;
   });
-  const std::string loops = loops_around(image, most->second.pc);
-  return fmt::format("{} of {} running warps are at {}{}{}", most->second.num_warps, pcs.size(), most->first,
-                     loops.empty() ? "" : "; ", loops);
+  return BusiestLine{most->first, most->second.pc, most->second.num_warps, pcs.size()};
+}
+
+std::string BusiestLine::to_string(const Image& image) const {
+  const std::string loops = loops_around(image, pc);
+  return fmt::format("{} of {} running warps are at {}{}{}", num_warps, of, place, loops.empty() ? "" : ", ",
+                     loops);
 }
 
 }  // namespace glint::exec

@@ -93,6 +93,8 @@ class Executor {
 
   // Returns the texels of the last texture or surface op, or none when it needed no memory.
   const TexelList& texels() const { return images_.texels(); }
+  // Returns the stores of texels that were not finite.
+  const NotFiniteStores& not_finite_stores() const { return images_.not_finite_stores(); }
   // Returns the lanes whose access the last load, store or atomic made in that space.
   LaneMask lanes_in(isa::Space space) const { return memory_.lanes_in(space); }
 

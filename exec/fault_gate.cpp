@@ -16,7 +16,7 @@ Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, 
   const std::string loops = loops_around(*world.image, pc);
   return {fmt::format("no end in sight: the warp has executed more than {} instructions, and "
                       "--max-instructions allows more{}{}",
-                      instruction_budget, loops.empty() ? "" : "; ", loops),
+                      instruction_budget, loops.empty() ? "" : "; the warp is ", loops),
           world.image->place_of(pc), shader_launch_id(world, warp.warp_index, lane)};
 }
 

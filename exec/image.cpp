@@ -104,14 +104,16 @@ void place_plain_table(World& world, Address base) {
   world.table.callable = {after(world.table.hit.base, world.hit.size()), kHandleBytes};
 }
 
+std::string Image::line_of(uint32_t pc) const {
+  const isa::Line& line = lines[pc];
+  const std::string& file = line.file < files.size() ? files[line.file] : shaders[shader_of[pc]].name;
+  return line.line ? fmt::format("{}:{}", file, line.line) : file;
+}
+
 std::string Image::place_of(uint32_t pc) const {
   if (pc >= code.size()) return fmt::format("instruction {}", pc);
-  const isa::Line& line = lines[pc];
-  const Shader& shader = shaders[shader_of[pc]];
-  const std::string file = line.file < files.size() ? files[line.file] : shader.name;
-  return line.line
-             ? fmt::format("{}:{} (instruction {}: {})", file, line.line, pc - shader.entry, rows[pc]->name)
-             : fmt::format("{} (instruction {}: {})", file, pc - shader.entry, rows[pc]->name);
+  return fmt::format("{} (instruction {}: {})", line_of(pc), pc - shaders[shader_of[pc]].entry,
+                     rows[pc]->name);
 }
 
 }  // namespace glint::exec

@@ -62,6 +62,7 @@ struct Image {
   Rows constants;
   uint32_t num_registers = 1;  // the highest of all shaders
 
+  std::string line_of(uint32_t pc) const;   // such as "shader.rchit:12", or the file or shader alone
   std::string place_of(uint32_t pc) const;  // such as "shader.rchit:12 (instruction 87: fma.rn.f32)"
 };
 Image link(const std::vector<isa::Program>& programs);

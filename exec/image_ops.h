@@ -20,6 +20,7 @@ class ImageOps {
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   // Returns the texels that the last op touched, or none when it needed no memory.
   const TexelList& texels() const { return texels_; }
+  const NotFiniteStores& not_finite_stores() const { return surfaces_.not_finite_stores(); }
 
  private:
   SeenMemory& seen_;

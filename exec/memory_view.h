@@ -51,6 +51,7 @@ class MemoryView {
 
   // Sets the time of what follows to `now`.
   void begin(Cycle now);
+  Cycle now() const { return now_; }
   void store(std::byte* at, const void* from, uint32_t bytes);
   void modify(const Modify& modify);
   void load(const Load& load);  // It takes place with commit().

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
@@ -28,6 +29,17 @@ Words load_texel(const isa::OpRow& row, TexelFormat format, const std::byte* at)
   Words words{};
   std::memcpy(words.data(), at, size_t(row.memory.bytes * row.memory.count));
   return words;
+}
+
+// Notes a texel's store when a channel that was stored is not finite. Most are finite, so it costs no more
+// than to look at them.
+void SurfaceOps::note_not_finite(const WarpContext& warp, int lane, TexelFormat format,
+                                 const std::byte* stored) {
+  if (info_of(format).numeric != Numeric::Float) return;
+  const Words words = decode(format, stored);
+  if (std::all_of(words.begin(), words.end(), [](uint32_t word) { return std::isfinite(float_of(word)); }))
+    return;
+  not_finite_.note(texels_.rows()[0][size_t(lane)], {seen_.is_used() ? seen_.view().now() : 0, warp.simt.pc});
 }
 
 // Returns where a lane's surface op goes. Null, with a fault or without one, says that it goes nowhere. It
@@ -105,7 +117,10 @@ bool SurfaceOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
     Words words = at ? Words{} : nowhere(warp, row, lane);
     if (row.effect == isa::Effect::SurfaceStore) {
       for (size_t c = slots.data; c < end; ++c) words[c - slots.data] = operands.word(c);
-      if (at) store_texel(row, images_.format_of(warp, lane), words, at);
+      if (!at) return;
+      const TexelFormat format = images_.format_of(warp, lane);
+      store_texel(row, format, words, at);
+      if (row.image.request == ImageRequest::Texel) note_not_finite(warp, lane, format, at);
       return;
     }
     if (row.effect == isa::Effect::SurfaceAtomic) {
@@ -151,7 +166,9 @@ void SurfaceOps::run_seen(WarpContext& warp, const isa::Inst& inst, const isa::O
     if (row.effect == isa::Effect::SurfaceStore && at) {
       Words words{};
       for (size_t c = 0; c < num_data(row); ++c) words[c] = operands.word(slots.data + c);
-      store_texel(row, images_.format_of(warp, lane), words, scratch.data());
+      const TexelFormat format = images_.format_of(warp, lane);
+      store_texel(row, format, words, scratch.data());
+      if (row.image.request == ImageRequest::Texel) note_not_finite(warp, lane, format, scratch.data());
       seen_.view().store(at, scratch.data(), bytes_of(lane));
     } else if (row.effect == isa::Effect::SurfaceAtomic && at) {
       const uint64_t swap = num_data(row) > 1 ? operands.bits(slots.data + 1, row) : 0;

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "exec/bound_images.h"
+#include "exec/not_finite_stores.h"
 #include "exec/seen_memory.h"
 #include "exec/texel_list.h"
 
@@ -17,8 +18,11 @@ class SurfaceOps {
 
   // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  // Returns the stores of texels that were not finite.
+  const NotFiniteStores& not_finite_stores() const { return not_finite_; }
 
  private:
+  void note_not_finite(const WarpContext& warp, int lane, TexelFormat format, const std::byte* stored);
   Words nowhere(const WarpContext& warp, const isa::OpRow& row, int lane) const;
   std::byte* find_texel(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, int lane);
   void run_seen(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, const LanePlaces& place);
@@ -28,6 +32,7 @@ class SurfaceOps {
   SeenMemory& seen_;
   BoundImages& images_;
   TexelList& texels_;
+  NotFiniteStores not_finite_;
   LaneMask outside_ = 0;  // lanes of the last op that were outside of an image with robust access
 };
 

@@ -3,6 +3,7 @@
 #include "pipeline/functional_machine.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,7 +68,11 @@ class Runner {
   }
 
   void tell(uint64_t ended_warps) {
-    if (watch_.progress) watch_.progress(progress(ended_warps));
+    if (!watch_.progress) return;
+    watch_.progress(progress(ended_warps), [this] {
+      const auto line = busiest_line();
+      return line ? line->place : "";
+    });
   }
 
   LaunchProgress progress(uint64_t ended_warps) const {
@@ -76,11 +81,11 @@ class Runner {
     return out;
   }
 
-  std::string whereabouts() const {
+  std::optional<exec::BusiestLine> busiest_line() const {
     std::vector<uint32_t> pcs;
     for (const WarpContext& warp : warps_)
       if (block_.live() >> warp.warp_in_block & 1) pcs.push_back(warp.simt.pc);
-    return exec::whereabouts(*world_.image, pcs);
+    return exec::busiest_line(*world_.image, pcs);
   }
 
   Executor executor;
@@ -136,12 +141,14 @@ FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_b
     if (!runner.run_block(index)) {
       runner.counts.end = LaunchEnd::Stopped;
       runner.counts.progress = runner.progress(uint64_t(index) * warps);
-      runner.counts.progress.where = runner.whereabouts();
+      if (const auto line = runner.busiest_line())
+        runner.counts.progress.where = line->to_string(*world.image);
       break;
     }
     runner.tell(uint64_t(index + 1) * warps);
   }
   runner.counts.faults = runner.executor.passed();
+  runner.counts.not_finite = runner.executor.not_finite_stores();
   return runner.counts;
 }
 

@@ -15,6 +15,7 @@ struct FunctionalCounts {
   exec::FaultLog faults;  // the faults that were let pass
   LaunchEnd end = LaunchEnd::Whole;
   LaunchProgress progress;
+  exec::NotFiniteStores not_finite;
 };
 
 // Runs a launch. Throws Error(Exit::Fault) when a warp does something wrong, comes into a loop that nothing

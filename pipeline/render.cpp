@@ -22,6 +22,16 @@ const stats::Group& RenderResult::statistics() const {
   return stats->root();
 }
 
+namespace {
+
+void keep_not_finite(RenderResult& result, exec::NotFiniteStores stores, const exec::Image& image) {
+  result.not_finite = std::move(stores);
+  for (const auto& [texel, store] : result.not_finite.by_texel())
+    result.store_lines.try_emplace(store.pc, image.line_of(store.pc));
+}
+
+}  // namespace
+
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
                        uint32_t threads, const LaunchWatch& watch, const Observation& observation) {
   RenderResult result;
@@ -39,6 +49,7 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
     result.progress = machine->progress();
     machine->collect(result);
     result.faults = machine->passed();
+    keep_not_finite(result, machine->not_finite_stores(), *world.image);
     if (observation.profile) result.profile = profile_of(*machine, *world.image);
     if (observation.sample) result.series = series_of(*machine, observation.sample);
     if (observation.trace.wanted)
@@ -53,6 +64,7 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
     std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
     result.rays = counts.rays;
     result.faults = counts.faults;
+    keep_not_finite(result, counts.not_finite, *world.image);
     result.stats = std::make_unique<RunStats>(counts);
   }
   if (costs) result.costs = cost_maps(*costs, timing);
@@ -74,6 +86,8 @@ RenderResult render(const RenderJob& job) {
   result.structures = scene.structures;
   result.warnings = scene.warnings;
   result.rgba = scene.read_image(SceneWorld::kPicture);
+  result.picture = scene.world.images[SceneWorld::kPicture];
+  result.picture.base = result.picture.address_of({scene.world.first_id[0], scene.world.first_id[1]});
   result.accumulation = scene.read_image(SceneWorld::kAccumulation);
   return result;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,10 +70,13 @@ struct RenderResult {
 
   uint32_t width = 0, height = 0;
   std::vector<float> rgba;           // what the shader stored to binding 2, row 0 first
-  std::vector<float> accumulation;   // binding 1, the sum over samples
-  LaunchEnd end = LaunchEnd::Whole;  // otherwise all that follows is of a part of the launch
-  LaunchProgress progress;           // how far a launch came that was ended early
-  uint64_t cycles = 0;               // cycles of the timing machine
+  exec::ImageView picture;           // where its texels lay; address_of() a pixel of `rgba` is its texel
+  exec::NotFiniteStores not_finite;  // which instructions stored to images what is not finite
+  std::map<uint32_t, std::string> store_lines;  // source lines of these instructions
+  std::vector<float> accumulation;              // binding 1, the sum over samples
+  LaunchEnd end = LaunchEnd::Whole;             // otherwise all that follows is of a part of the launch
+  LaunchProgress progress;                      // how far a launch came that was ended early
+  uint64_t cycles = 0;                          // cycles of the timing machine
   uint64_t warp_instructions = 0, lane_instructions = 0;
   ClassCounts by_class[size_t(isa::Class::Count)];
   RayCounts rays;

@@ -3,10 +3,12 @@
 #include "pipeline/timing_machine.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
+#include <utility>
 
 #include "base/check.h"
-#include "exec/endless_loops.h"
+#include "exec/launch.h"
 #include "pipeline/check_params.h"
 #include "pipeline/conservation.h"
 #include "pipeline/functional_machine.h"
@@ -47,7 +49,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
       world_(world),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
       endless_(*world.image),
-      livelock_(params_.core.livelock_budget),
+      effects_(params_.core.livelock_budget),
+      turnover_(params_.core.turnover_budget),
       engine_({.turn = memory_.shortest_latency(),
                .no_skip = no_skip,
                .threads = host.threads,
@@ -103,26 +106,28 @@ Cycle TimingMachine::run(const LaunchWatch& watch) {
     for (const auto& core : cores_) progress_.ended_warps -= core->num_resident();
     progress_.cycles = now;
   };
-  const bool may_be_endless = endless_.any() && watch.max_cycles == 0;
+  const bool may_be_endless = endless_.any() && watch.max_cycles == 0,
+             may_have_no_end = !watch.is_bounded && watch.max_cycles == 0;
+  const auto line = [this] {
+    const auto busiest = busiest_line();
+    return busiest ? busiest->place : "";
+  };
   Cycle next_look = 0;
   const Cycle quiet = engine_.run(
       [&](Cycle now) {
-        livelock_.look(now, exec::MemoryView::commit(views_), [&] {
-          uint64_t changes = 0;
-          for (const auto& core : cores_) changes += core->changes();
-          return changes;
-        });
+        const bool memory_changed = exec::MemoryView::commit(views_);
         for (const auto& core : cores_)
           if (!fault && core->fault()) fault = &*core->fault();
         if (fault) return EngineLoop::Next::Stop;
-        if (livelock_.is_over(now)) throw_livelock(now);
+        refuse_livelock(now, memory_changed);
+        if (may_have_no_end) refuse_endless_launch(now);
         if (const LaunchEnd end = early_end(watch, now); end != LaunchEnd::Whole) {
           note_progress(now);
           progress_.instructions = instructions();
           // A launch whose warps have all ended only waits for its last writes.
           if (progress_.ended_warps < progress_.num_warps) {
             end_ = end;
-            progress_.where = whereabouts();
+            if (const auto line = busiest_line()) progress_.where = line->to_string(*world_.image);
             return EngineLoop::Next::Stop;
           }
         }
@@ -134,7 +139,7 @@ Cycle TimingMachine::run(const LaunchWatch& watch) {
         }
         if (watch.progress) {
           note_progress(now);
-          watch.progress(progress_);
+          watch.progress(progress_, line);
         }
         return dispatcher.done() ? EngineLoop::Next::NothingMore : EngineLoop::Next::Continue;
       },
@@ -172,14 +177,14 @@ uint64_t TimingMachine::instructions() const {
   return sum;
 }
 
-std::string TimingMachine::whereabouts() const {
+std::optional<exec::BusiestLine> TimingMachine::busiest_line() const {
   std::vector<uint32_t> pcs;
   for (const auto& core : cores_)
     core->find_warp([&](const exec::WarpContext& warp) {
       if (!warp.simt.finished()) pcs.push_back(warp.simt.pc);
       return false;
     });
-  return exec::whereabouts(*world_.image, pcs);
+  return exec::busiest_line(*world_.image, pcs);
 }
 
 void TimingMachine::refuse_endless_loops() const {
@@ -190,21 +195,60 @@ void TimingMachine::refuse_endless_loops() const {
 }
 
 // Throws an error about warps that go on for ever without any effect. Most of these wait for a spin lock
-// whose holder waits, too.
-void TimingMachine::throw_livelock(Cycle now) const {
+// whose holder waits, too. Model: registers of warps are not looked at, so a launch that only computes for
+// longer than the budget is taken for one that spins.
+void TimingMachine::refuse_livelock(Cycle now, bool memory_changed) {
+  effects_.look(now, memory_changed, [&] {
+    uint64_t changes = 0;
+    for (const auto& core : cores_) changes += core->changes();
+    return changes;
+  });
+  if (!effects_.is_over(now)) return;
   std::string message = fmt::format(
       "the machine is stuck at cycle {}: warps run, but since cycle {} none has ended, no ray has and "
       "nothing in memory has changed\n",
-      now, livelock_.since());
+      now, effects_.since());
   for (const auto& core : cores_)
     if (!core->finished()) message += core->describe_stall();
   throw Error(Exit::Stuck,
               message + "note: core.livelock_budget says how long that may last; 0 means for ever");
 }
 
+// Throws an error about warps that have an effect and come to no end: a loop that stores or traces and whose
+// way out is never taken.
+void TimingMachine::refuse_endless_launch(Cycle now) {
+  turnover_.look(now, false, [&] {
+    uint64_t turnover = 0;
+    for (const auto& core : cores_) turnover += core->turnover();
+    return turnover;
+  });
+  if (!turnover_.is_over(now)) return;
+  const auto line = busiest_line();
+  if (!line) return;  // The launch only waits for its last writes.
+  for (const auto& core : cores_)
+    if (const exec::WarpContext* warp =
+            core->find_warp([&](const exec::WarpContext& one) { return one.simt.pc == line->pc; })) {
+      const int lane = warp->simt.active ? std::countr_zero(warp->simt.active) : 0;
+      exec::Fault fault{fmt::format("no end in sight: for {} cycles no warp has begun or ended, and {}",
+                                    params_.core.turnover_budget, line->to_string(*world_.image)),
+                        world_.image->place_of(line->pc),
+                        exec::shader_launch_id(world_, warp->warp_index, lane)};
+      throw Error(Exit::Fault,
+                  passed().with(fault) +
+                      "\n  note: --set core.turnover_budget=CYCLES allows more cycles; 0 allows any number");
+    }
+}
+
 exec::FaultLog TimingMachine::passed() const {
   exec::FaultLog all;
   for (const auto& core : cores_) all.add(core->passed());
+  return all;
+}
+
+// Stores of one cycle took effect in the order of their cores.
+exec::NotFiniteStores TimingMachine::not_finite_stores() const {
+  exec::NotFiniteStores all;
+  for (const auto& core : cores_) all.add(std::as_const(*core).executor().not_finite_stores());
   return all;
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "base/stats.h"
@@ -13,7 +13,7 @@
 #include "engine/engine_loop.h"
 #include "exec/endless_loops.h"
 #include "memsys/memory_system.h"
-#include "pipeline/livelock_watch.h"
+#include "pipeline/progress_watch.h"
 #include "pipeline/render.h"
 #include "rtunit/unit/rt_unit.h"
 
@@ -46,6 +46,9 @@ class TimingMachine {
   // Returns the faults of all cores that were let pass.
   exec::FaultLog passed() const;
 
+  // Returns the stores of texels that were not finite, of all cores.
+  exec::NotFiniteStores not_finite_stores() const;
+
   // Sums over the cores for the caller's result.
   void collect(RenderResult& result) const;
 
@@ -60,9 +63,10 @@ class TimingMachine {
   uint32_t num_cores() const { return uint32_t(cores_.size()); }
 
  private:
-  [[noreturn]] void throw_livelock(Cycle now) const;
-  std::string whereabouts() const;
+  void refuse_livelock(Cycle now, bool memory_changed);
+  void refuse_endless_launch(Cycle now);
   void refuse_endless_loops() const;
+  std::optional<exec::BusiestLine> busiest_line() const;
   uint64_t instructions() const;
   void finish(Cycle quiet, Cycle cycles);
 
@@ -89,7 +93,7 @@ class TimingMachine {
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
   std::vector<exec::MemoryView*> views_;  // those of all cores; empty when there is one core
   const exec::EndlessLoops endless_;
-  LivelockWatch livelock_;
+  ProgressWatch effects_, turnover_;
   LaunchEnd end_ = LaunchEnd::Whole;
   LaunchProgress progress_;
   EngineLoop engine_;

@@ -272,7 +272,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
                               {"count", fault.count}});
   for (const auto& [file, found] : info.not_finite) {
     json["not_finite"][file] = {{"pixels", found.pixels}, {"x", found.x}, {"y", found.y}};
-    if (!found.stores.empty()) json["not_finite"][file]["stores"] = found.stores;
+    if (!found.stored_at.empty()) json["not_finite"][file]["stored_at"] = found.stored_at;
   }
   if (!info.saved.empty()) json["saved"] = info.saved;
   for (const OutputInfo& output : info.outputs)

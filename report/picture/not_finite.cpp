@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "report/terminal/table.h"
 
@@ -27,12 +26,10 @@ std::optional<NotFinite> not_finite(const pictures::ImageView& image) {
 }
 
 std::string text_of(const NotFinite& found, const pictures::ImageView& image) {
-  const std::string stores = found.stores.empty() ? ""
-                                                  : fmt::format("; the shaders store to images at {}",
-                                                                fmt::join(found.stores, " and "));
+  const std::string stored = found.stored_at.empty() ? "" : ", stored at " + found.stored_at;
   return fmt::format("{} of {} pixels are not finite; the first at x {}, y {} from the top left: {} {} {}{}",
                      with_thousands(found.pixels), with_thousands(uint64_t{image.width} * image.height),
-                     found.x, found.y, found.rgb[0], found.rgb[1], found.rgb[2], stores);
+                     found.x, found.y, found.rgb[0], found.rgb[1], found.rgb[2], stored);
 }
 
 }  // namespace glint::report

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "pictures/encode.h"
 
@@ -16,15 +15,14 @@ struct NotFinite {
   uint64_t pixels = 0;
   uint32_t x = 0, y = 0;  // from the top left
   std::array<float, 3> rgb{};
-  // Lines of the shaders that stored to images, such as "shade.comp:12", which only a profile knows.
-  std::vector<std::string> stores{};
+  std::string stored_at{};  // the line whose store made that pixel so, such as "shade.comp:12", if known
 };
 
 // Returns nothing when all pixels are finite.
 std::optional<NotFinite> not_finite(const pictures::ImageView& image);
 
-// Returns text such as "3 of 4 096 pixels are not finite; the first at x 3, y 4 from the top left: nan 0 0;
-// the shaders store to images at shade.comp:12".
+// Returns text such as "3 of 4 096 pixels are not finite; the first at x 3, y 4 from the top left: nan 0 0,
+// stored at shade.comp:12".
 std::string text_of(const NotFinite& found, const pictures::ImageView& image);
 
 }  // namespace glint::report

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <string>
 
 #include "report/terminal/table.h"
@@ -14,10 +15,12 @@ namespace glint::report {
 // Counts what a launch has done. It moves on even while no part of the whole is done.
 struct Work {
   uint64_t cycles = 0, instructions = 0;
+  std::string at{};  // the source line where most of it goes on, or nothing
 };
 
-// Returns the line for `done` of `total` after `elapsed` seconds, without control characters. Cycles and
-// instructions per second are in it when there are some.
+// Returns the line for `done` of `total` after `elapsed` seconds, without control characters. Cycles,
+// instructions per second and the source line are in it when there are some. What is wider than a terminal
+// loses the estimate first, and then the bar.
 std::string progress_line(const std::string& label, uint64_t done, uint64_t total, double elapsed,
                           const Terminal& terminal, const Work& work = {});
 
@@ -30,7 +33,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void update(uint64_t done, uint64_t total, const Work& work = {});
+  // `source_line()` says what Work::at is. It is asked where nothing more was done for some seconds.
+  void update(uint64_t done, uint64_t total, Work work = {},
+              const std::function<std::string()>& source_line = {});
   void clear();  // wipes the line, so that the next text starts on a clean one
 
  private:
@@ -38,7 +43,8 @@ class Progress {
   std::FILE* stream_;
   std::string label_;
   Terminal terminal_;
-  Clock::time_point start_, last_;
+  Clock::time_point start_, last_, moved_;  // `moved_` is when `done_` grew last
+  uint64_t done_ = 0;
   size_t drawn_ = 0;  // columns on the screen
 };
 

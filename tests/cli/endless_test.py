@@ -96,9 +96,27 @@ class Endless(GlintTest):
     def test_a_loop_whose_way_out_is_never_taken_ends_by_the_budget_and_is_named_with_the_loop_around_it(self):
         self.write("never.comp", NEVER_TAKEN)
         for mode in ("functional", "timing"):
-            said = self.expect(4, ["no end in sight: the warp has executed more than 5000 instructions, and --max-instructions allows more; it is in the loop of line"], "run", "never.comp", "--mode", mode,
+            said = self.expect(4, ["no end in sight: the warp has executed more than 5000 instructions, and --max-instructions allows more; the warp is in the loop of line"], "run", "never.comp", "--mode", mode,
                                "--max-instructions", "5000").stderr
-            self.assertRegex(said, r"it is in the loop of lines? [67].*, and that is in the loop of lines [56] to [78]")
+            self.assertRegex(said, r"the warp is in the loop of lines? [67].*, which is in the loop of lines [56] to [78]")
+
+    def test_a_launch_whose_warps_do_not_end_is_cut_by_the_budget_of_turnover_and_told_where_they_are(self):
+        self.write("never.comp", NEVER_TAKEN)
+        for threads in (1, 2):
+            said = self.expect(4, ["no end in sight: for 30000 cycles no warp has begun or ended, and ", "--set core.turnover_budget=CYCLES allows more"], "run", "never.comp",
+                               "--set", "core.turnover_budget=30000", "--threads", threads).stderr
+            self.assertRegex(said, r"never\.comp:[67] .* of \d+ running warps are at .*never\.comp:[67], in the loop of lines 6 to 7, which is in the loop of lines 5 to 7")
+        # The budget is on without being asked for.
+        self.glint("run", "WKND_SH", "--size", "8x8", "--out", "whole")
+        self.assertIn("turnover_budget = 20000000", (self.folder / "whole/config.toml").read_text())
+
+    def test_a_launch_whose_warps_take_turns_may_take_longer_than_the_budget_of_turnover(self):
+        self.write("turns.comp", HEAD + "void main() {\n  for (uint i = 0; i < 20; ++i)\n    v[gl_GlobalInvocationID.x] += i;\n}\n")
+        done = self.glint("run", "turns.comp", "--set", "core.turnover_budget=9000", "--out", "turns")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertGreater(int(re.search(r"gpu.cycles,(\d+)", (self.folder / "turns/stats.csv").read_text())[1]), 20000)
+        # The loops of built-in shaders count to numbers of rays.
+        self.assertEqual(self.glint("run", "WKND_PT", "--size", "8x8", "--set", "core.turnover_budget=1000").returncode, 0)
 
     def test_the_error_is_the_same_at_any_number_of_threads(self):
         self.write("some.comp", SOME_LANES)
@@ -160,7 +178,7 @@ class Early(GlintTest):
 
     def test_a_launch_that_is_ended_early_names_the_line_and_the_loops_where_its_warps_were(self):
         (self.folder / "never.comp").write_text(NEVER_TAKEN)
-        where = r"(\d+) of (\d+) running warps are at .*never\.comp:[67]; it is in the loop of lines 6 to 7, and that is in the loop of lines 5 to 7"
+        where = r"(\d+) of (\d+) running warps are at .*never\.comp:[67], in the loop of lines 6 to 7, which is in the loop of lines 5 to 7"
         done = self.glint("run", "never.comp", "--max-cycles", "20000", "--out", "out")
         self.assertEqual(done.returncode, 6, done.stderr)
         self.assertRegex(done.stderr, where)
@@ -228,6 +246,18 @@ class Early(GlintTest):
             pass
         process.communicate(timeout=60)
         self.assertRegex(shown.decode(), r"\r k \[[^\]]*\]   0 %  .*  \d[\d.]* [kM] cycles  \d[\d.]* [kM] instr/s")
+
+    def test_the_terminal_names_the_line_of_a_launch_in_which_nothing_has_ended_for_some_seconds(self):
+        self.write("k.ptx", LOOP_PTX)
+        self.write("k.toml", LOOP_TOML)
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([GLINT, "run", "k.toml", "--max-cycles", "100000000000", "--out", "out"], cwd=self.folder, stdout=theirs, stderr=subprocess.PIPE)
+        self.addCleanup(lambda: (process.kill(), process.communicate()))
+        os.close(theirs)
+        shown, deadline = "", time.monotonic() + 60
+        while not re.search(r"\r k .*  0 %  .* cycles  .* instr/s  at k\.ptx:1[0-2]", shown):
+            self.assertLess(time.monotonic(), deadline, shown)
+            shown += os.read(ours, 4096).decode()
 
 
 def handles(pid, number):

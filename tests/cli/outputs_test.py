@@ -91,21 +91,35 @@ class Outputs(GlintTest):
                    'size = [8, 4]\nsave = "picture.pfm"\n')
         for mode in ("functional", "timing"):
             said = self.ok("run", "p/p.toml", "--mode", mode, "--out", "out").stderr
-            self.assertIn("warning: picture.pfm: 4 of 32 pixels are not finite; the first at x 5, y 2 from the top left: 1e+38 inf 1e+38", said)
+            self.assertIn("warning: picture.pfm: 4 of 32 pixels are not finite; the first at x 5, y 2 from the top left: 1e+38 inf 1e+38, stored at picture.comp:9\n", said)
             record = json.loads((self.folder / "out/run.json").read_text())
-            self.assertEqual(record["not_finite"], {"picture.pfm": {"pixels": 4, "x": 5, "y": 2}})
-            self.assertNotIn("store to images", said)
-        said = self.ok("run", "p/p.toml", "--profile", "--out", "out").stderr
-        self.assertIn("1e+38 inf 1e+38; the shaders store to images at picture.comp:9\n", said)
-        record = json.loads((self.folder / "out/run.json").read_text())
-        self.assertEqual(record["not_finite"]["picture.pfm"]["stores"], ["picture.comp:9"])
+            self.assertEqual(record["not_finite"], {"picture.pfm": {"pixels": 4, "x": 5, "y": 2, "stored_at": "picture.comp:9"}})
+        self.ok(*RUN, "--out", "run")
+        self.assertNotIn("not_finite", json.loads((self.folder / "run/run.json").read_text()))
+        # Of several lines that store, the one that stored the pixel last is named.
         twice = (self.folder / "p/picture.comp").read_text().replace("  imageStore(picture, at, colour);", "  if (at.x > 4)\n    imageStore(picture, at, colour);\n  else\n    imageStore(picture, at, colour * 0.5);\n"
                                                                      "  if (at.x > 90) imageStore(picture, at, vec4(0));")
         self.write("p/picture.comp", twice)
-        said = self.ok("run", "p/p.toml", "--profile", "--out", "out").stderr
-        self.assertIn("the shaders store to images at picture.comp:10 and picture.comp:12\n", said)  # line 13 never runs
-        self.ok(*RUN, "--out", "run")
-        self.assertNotIn("not_finite", json.loads((self.folder / "run/run.json").read_text()))
+        for cores in ("functional", "timing", "one core"):
+            options = ["--set", "cores=1"] if cores == "one core" else ["--mode", cores]
+            self.assertIn(", stored at picture.comp:10\n", self.ok("run", "p/p.toml", *options, "--out", "out").stderr)
+        # A store that is finite leaves an earlier one that is not without effect.
+        self.write("p/picture.comp", twice.replace("  if (at.x > 4)", "  imageStore(picture, at, colour / 0.0);\n  if (at.x > 4)"))
+        self.assertIn("the first at x 5, y 2 from the top left: 1e+38 inf 1e+38, stored at picture.comp:11\n", self.ok("run", "p/p.toml", "--out", "out").stderr)
+
+    def test_the_store_that_left_a_pixel_not_finite_is_named_in_windows_layers_and_halves(self):
+        shutil.copytree(ROOT / "shaders/path_tracing", self.folder / "shaders/path_tracing")
+        shutil.copytree(ROOT / "shaders/include", self.folder / "shaders/include")
+        self.write("shaders/path_tracing/raygen.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nlayout(set = 0, binding = 2, rgba32f) uniform image2D picture;\n"
+                   "void main() {\n  ivec2 at = ivec2(gl_LaunchIDEXT.xy);\n  if (at == ivec2(9, 6))\n    imageStore(picture, at, vec4(1.0 / float(at.x - 9)));\n  else\n    imageStore(picture, at, vec4(0.5));\n}\n")
+        said = self.ok("run", "WKND", "--shader-dir", "shaders/path_tracing", "--size", "16x16", "--crop", "8,5,4,4", "--out", "out").stderr
+        self.assertIn("1 of 16 pixels are not finite; the first at x 1, y 1 from the top left: inf inf inf, stored at raygen.rgen:7\n", said)
+        self.write("p/layers.comp", "#version 460\nlayout(local_size_x = 8, local_size_y = 4) in;\nlayout(set = 0, binding = 0, rgba16f) uniform image2DArray picture;\n"
+                   "void main() {\n  ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n  imageStore(picture, ivec3(at, 0), vec4(1));\n"
+                   "  imageStore(picture, ivec3(at, 1), vec4(at.x == 3 ? 65520.0 : 1.0));\n}\n")
+        self.write("p/layers.toml", '[compute]\nshader = "layers.comp"\n[launch]\ngroups = [1, 1]\n[[image]]\nname = "picture"\nset = 0\nbinding = 0\n'
+                   'size = [8, 4]\nlayers = 2\nsave = "picture.pfm"\n')
+        self.assertIn("4 of 64 pixels are not finite; the first at x 3, y 4 from the top left: inf inf inf, stored at layers.comp:7\n", self.ok("run", "p/layers.toml", "--out", "out").stderr)
 
     def test_compact_statistics_are_totals_from_which_all_metrics_follow_in_at_most_60_kb(self):
         for what in (["SHIP_PT", "--config", "mobile"], ["WKND_SH", "--config", "desktop"], ["WKND_AO", "--config", "h200"], ["WKND_PT", "--mode", "functional"]):

@@ -263,7 +263,7 @@ TEST_CASE("an endless warp ends with a fault that names the place") {
   CHECK(core.cell->fault()->what ==
         "no end in sight: the warp has executed more than 1000 instructions, and --max-instructions allows "
         "more; "
-        "it is in the loop of instruction 0");
+        "the warp is in the loop of instruction 0");
   CHECK(core.cell->fault()->place.find("bra") != std::string::npos);
   CHECK(core.cell->fault()->launch_id == std::array<uint32_t, 3>{0, 0, 0});
 }

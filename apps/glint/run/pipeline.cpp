@@ -68,7 +68,7 @@ void check_saves(const pipeline::PipelineDescription& d) {
 
 // Writes what the file asks for. Returns lines for the summary.
 std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory,
-                              const ProfileTable& profile, report::RunInfo& info) {
+                              const pipeline::RenderResult& result, report::RunInfo& info) {
   std::vector<std::string> lines;
   const pipeline::PipelineDescription& d = world.description();
   for (size_t i = 0; i < d.images.size(); ++i) {
@@ -82,7 +82,7 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
     }
     const std::vector<float> floats = pipeline::texels_as_floats(view, texels);
     note_not_finite(d.images[i].saves[0].file, {view.width, view.height * view.depth * view.layers, floats},
-                    profile, info);
+                    view, result, info);
   }
   for (size_t i = 0; i < d.buffers.size(); ++i) {
     const pipeline::BufferDescription& b = d.buffers[i];
@@ -177,7 +177,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
-        files = keep(world, directory, ended.profile, info);
+        files = keep(world, directory, ended, info);
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));

@@ -98,8 +98,9 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
   // Before the launch begins, signals end the process at once.
   std::optional<StopSignals> signals;
   pipeline::LaunchWatch watch;
-  watch.progress = [&](const pipeline::LaunchProgress& at) {
-    progress.update(at.ended_warps, at.num_warps, {at.cycles, at.instructions});
+  watch.progress = [&](const pipeline::LaunchProgress& at, const std::function<std::string()>& line) {
+    progress.update(at.ended_warps, at.num_warps, {at.cycles, at.instructions},
+                    [&] { return std::filesystem::path(line()).filename().string(); });
     pipe.update(at.ended_warps, at.num_warps);
   };
   watch.stop = [&] {
@@ -143,26 +144,15 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
   }
 }
 
-namespace {
-
-// Returns the source lines whose image stores some lane executed, in order and without repetition.
-std::vector<std::string> lines_of_stores(const ProfileTable& profile) {
-  std::vector<std::string> out;
-  for (const ProfileRow& row : profile.rows) {
-    if (!row.op.starts_with("sust.") || row.lanes == 0 || row.line == 0) continue;
-    std::string place = fmt::format("{}:{}", std::filesystem::path(row.file).filename().string(), row.line);
-    if (std::find(out.begin(), out.end(), place) == out.end()) out.push_back(std::move(place));
-  }
-  return out;
-}
-
-}  // namespace
-
-void note_not_finite(const std::string& file, const pictures::ImageView& image, const ProfileTable& profile,
-                     report::RunInfo& info) {
+void note_not_finite(const std::string& file, const pictures::ImageView& image, const exec::ImageView& view,
+                     const pipeline::RenderResult& result, report::RunInfo& info) {
   std::optional<report::NotFinite> found = report::not_finite(image);
   if (!found) return;
-  found->stores = lines_of_stores(profile);
+  // A picture has the slices and layers of an image below each other, which is how they lie in memory.
+  const Address texel = view.address_of({.x = found->x}) + (view.address_of({.y = 1}) - view.base) * found->y;
+  const auto& stores = result.not_finite.by_texel();
+  if (const auto store = stores.find(texel); store != stores.end())
+    found->stored_at = std::filesystem::path(result.store_lines.at(store->second.pc)).filename().string();
   info.not_finite.emplace_back(file, *found);
   fmt::print(stderr, "warning: {}: {}\n", file, report::text_of(*found, image));
 }

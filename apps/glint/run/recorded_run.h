@@ -36,10 +36,10 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
 inline constexpr Exit kReachedMaxCycles = Exit(6);
 
 // Notes a picture's pixels that are not finite in `info`, and warns of them on stderr. `file` is the
-// picture's name in the run directory. The lines that stored them are known where the launch has a profile;
-// where several lines store to images, each is named.
-void note_not_finite(const std::string& file, const pictures::ImageView& image, const ProfileTable& profile,
-                     report::RunInfo& info);
+// picture's name in the run directory, and `view` says where its texels lay. `result` knows which line stored
+// the first such pixel.
+void note_not_finite(const std::string& file, const pictures::ImageView& image, const exec::ImageView& view,
+                     const pipeline::RenderResult& result, report::RunInfo& info);
 
 // Prints the faults that were let pass to stderr. Prints the statistics as JSON, or the summary of a run with
 // lines about the files that it left. Returns the exit code that `info` has, and says why it is not 0.

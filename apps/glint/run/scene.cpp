@@ -86,10 +86,10 @@ std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options
 
 report::RunInfo describe_run(const Session& session, const SceneOptions& options, const LaunchOptions& launch,
                              const pipeline::RenderJob& job) {
-  if (scenes::names_scene_file(options.scene)) info.scene_file = options.scene;
   report::RunInfo info = new_run_info(session, job.gpu, launch.config, launch.mode);
   info.scene = job.scene.name;
   info.scene_form = job.scene.form;
+  if (scenes::names_scene_file(options.scene)) info.scene_file = options.scene;
   info.scene_note = job.scene.note;
   info.scene_hash = job.scene.hash();
   info.scene_triangles = job.scene.triangles();
@@ -104,10 +104,13 @@ report::RunInfo describe_run(const Session& session, const SceneOptions& options
 
 // Renders the job and leaves its files in the directory.
 pipeline::RenderResult render_into(const Session& session, const report::RunDirectory& directory,
-                                   report::RunInfo& info, pipeline::RenderJob& job, uint64_t max_cycles,
-                                   bool exr, std::vector<std::string>& files) {
+                                   report::RunInfo& info, pipeline::RenderJob& job,
+                                   const SceneOptions& options, uint64_t max_cycles,
+                                   std::vector<std::string>& files) {
+  const bool has_built_in_shaders = options.shader_dir.empty();
   const auto render = [&](const pipeline::LaunchWatch& watch) {
     job.watch = watch;
+    job.watch.is_bounded = has_built_in_shaders;  // Their loops count to numbers of rays.
     pipeline::RenderResult rendered = pipeline::render(job);
     const pipeline::StructureCounts& made = rendered.structures;
     info.structures = {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
@@ -117,8 +120,8 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
   const auto keep = [&](const pipeline::RenderResult& rendered) {
     const pictures::ImageView image{rendered.width, rendered.height, rendered.rgba};
     directory.write_image(image);
-    if (exr) directory.write("image.exr", pictures::exr_bytes(image));
-    note_not_finite("image.pfm", image, rendered.profile, info);
+    if (options.exr) directory.write("image.exr", pictures::exr_bytes(image));
+    note_not_finite("image.pfm", image, rendered.picture, rendered, info);
     directory.write_stats(rendered.statistics(), info.compact);
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));
@@ -153,7 +156,7 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
       "picture    " + directory.path_of("image.png"),
       "statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt")};
   const pipeline::RenderResult result =
-      render_into(session, directory, info, job, launch.max_cycles, options.exr, files);
+      render_into(session, directory, info, job, options, launch.max_cycles, files);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
   return print_result(session, launch.json, job, result, info, title, std::move(files));
 }

@@ -46,8 +46,8 @@ TEST_CASE("of two loops in each other the outer one is named when both are endle
   CHECK_THAT(launch.fault(),
              Contains("nothing leads out of the loop of instructions 0 to 4, which the warp has entered"));
   CHECK(loops_around(launch.image, 2) ==
-        "it is in the loop of instructions 1 to 3, and that is in the loop of instructions 0 to 4");
-  CHECK(loops_around(launch.image, 0) == "it is in the loop of instructions 0 to 4");
+        "in the loop of instructions 1 to 3, which is in the loop of instructions 0 to 4");
+  CHECK(loops_around(launch.image, 0) == "in the loop of instructions 0 to 4");
 }
 
 TEST_CASE("a function that returns does not end the loop that calls it, and one that exits does") {

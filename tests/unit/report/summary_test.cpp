@@ -110,6 +110,9 @@ TEST_CASE("the progress line extrapolates the time left") {
   CHECK(progress_line("endless.comp of mine", 0, 4, 2.0, {},
                       {.cycles = 123'000'000, .instructions = 7'000'000}) ==
         " endless.comp [........]   0 %  2.0 s  123.00 M cycles  3.50 M instr/s");
+  CHECK(progress_line("never.comp", 0, 4, 64.0, {},
+                      {.cycles = 9'000'000, .instructions = 64'000'000, .at = "never.comp:6"}) ==
+        " never.comp   0 %  1 min 04 s  9.00 M cycles  1.00 M instr/s  at never.comp:6");
   CHECK(progress_line("SHIP", 1, 4, 2.0, {}, {.cycles = 0, .instructions = 3000}) ==
         " SHIP [##......]  25 %  2.0 s  ETA 6.0 s  2 k instr/s");
 }

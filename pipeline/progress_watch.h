@@ -1,4 +1,4 @@
-// Tells warps that spin for ever from a machine at work, by the time since their work last had an effect.
+// Says for how long a launch has made no progress of some kind, such as the end of a warp.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,14 +7,13 @@
 
 namespace glint::pipeline {
 
-// Looks at the machine between turns. A budget of 0 stands for no limit. Model: registers of warps are not
-// looked at, so a launch that only computes for longer than the budget is taken for one that spins.
-class LivelockWatch {
+// Looks at the machine between turns. A budget of 0 stands for no limit.
+class ProgressWatch {
  public:
-  explicit LivelockWatch(uint64_t budget) : budget_(budget) {}
+  explicit ProgressWatch(uint64_t budget) : budget_(budget) {}
 
-  // Looks for progress. `memory_changed` says whether memory has changed since the last look. `count()` grows
-  // with everything else that counts as progress, and is called only now and then.
+  // Looks for progress. `memory_changed` says whether memory has changed since the last look, where that
+  // counts as progress. `count()` grows with everything else that counts, and is called only now and then.
   template <class Count>
   void look(Cycle now, bool memory_changed, Count&& count) {
     if (memory_changed) since_ = now;

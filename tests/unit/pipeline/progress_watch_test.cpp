@@ -1,14 +1,14 @@
-// Tests to the cycle when warps that run count as stuck.
+// Tests to the cycle when a launch counts as one without progress.
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/livelock_watch.h"
+#include "pipeline/progress_watch.h"
 
 #include "tests/support/catch.h"
 
 using namespace glint;
-using pipeline::LivelockWatch;
+using pipeline::ProgressWatch;
 
 TEST_CASE("a budget is over a cycle after it, counted from the last change of memory") {
-  LivelockWatch watch(10'000);
+  ProgressWatch watch(10'000);
   const auto nothing = [] { return uint64_t{0}; };
   watch.look(0, false, nothing);
   watch.look(5000, true, nothing);
@@ -18,7 +18,7 @@ TEST_CASE("a budget is over a cycle after it, counted from the last change of me
 }
 
 TEST_CASE("other progress counts too, and is asked for now and then only") {
-  LivelockWatch watch(10'000);
+  ProgressWatch watch(10'000);
   uint64_t done = 0;
   int asked = 0;
   const auto count = [&] { return ++asked, done; };
@@ -32,7 +32,7 @@ TEST_CASE("other progress counts too, and is asked for now and then only") {
 }
 
 TEST_CASE("a budget of 0 is never over") {
-  LivelockWatch watch(0);
+  ProgressWatch watch(0);
   watch.look(1'000'000'000, false, [] { return uint64_t{0}; });
   CHECK_FALSE(watch.is_over(1'000'000'000));
 }
