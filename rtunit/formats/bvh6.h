@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "rtunit/formats/quantised_boxes.h"
@@ -24,21 +25,24 @@ struct Bvh6 : QuantisedBoxes<Bvh6> {
   static constexpr uint32_t kNodeBytes = sizeof(Node);
   static_assert(kNodeBytes == 64);
 
-  // Returns the references of a node's children, one after the other. Internal nodes are as large as leaves,
-  // and siblings follow each other without gaps.
+  // Internal nodes are as large as leaves that are no instances, and siblings follow each other without gaps.
   class References {
    public:
-    explicit References(const Node& node) : node_(node), block_(node.first_block) {}
-    NodeRef next(int child) {
-      const NodeKind kind = NodeKind(node_.kind[size_t(child)] & 7);
-      const NodeRef out = node_ref(block_, kind);
-      block_ += (kind == NodeKind::Internal ? kNodeBytes : leaf_bytes(kind)) / kBlockBytes;
-      return out;
+    explicit References(const std::byte* node)
+        : first_block_(load<uint32_t>(node + offsetof(Node, first_block))),
+          kinds_(kinds(node)),
+          blocks_(word_bytes::sums_below(kNodeBytes / kBlockBytes * word_bytes::kOnes +
+                                         (leaf_bytes(NodeKind::Instance) - kNodeBytes) / kBlockBytes *
+                                             word_bytes::equal(kinds_, uint64_t(NodeKind::Instance)))) {}
+    NodeRef operator[](int child) const {
+      return node_ref(first_block_ + word_bytes::get(blocks_, child),
+                      NodeKind(word_bytes::get(kinds_, child)));
     }
 
    private:
-    const Node& node_;
-    uint32_t block_;
+    static_assert(kNodeBytes == kLeafBytes);
+    const uint32_t first_block_;
+    const uint64_t kinds_, blocks_;  // a byte for each child; blocks_ counts from first_block_
   };
 };
 

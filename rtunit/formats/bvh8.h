@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "rtunit/formats/quantised_boxes.h"
@@ -28,22 +29,31 @@ struct Bvh8 : QuantisedBoxes<Bvh8> {
   static constexpr uint32_t kNodeBytes = sizeof(Node);
   static_assert(kNodeBytes == 80 && kNodeBytes % kBlockBytes == 0);
 
-  // Returns the references of a node's children, one after the other.
+  // Children of each sort, nodes and leaves, follow each other without gaps.
   class References {
    public:
-    explicit References(const Node& node)
-        : node_(node), next_node_(node.first_node), next_leaf_(node.first_leaf) {}
-    NodeRef next(int child) {
-      const NodeKind kind = NodeKind(node_.kind[size_t(child)] & 7);
-      uint32_t& next = kind == NodeKind::Internal ? next_node_ : next_leaf_;
-      const NodeRef out = node_ref(next, kind);
-      next += (kind == NodeKind::Internal ? kNodeBytes : leaf_bytes(kind)) / kBlockBytes;
-      return out;
+    explicit References(const std::byte* node)
+        : first_node_(load<uint32_t>(node + offsetof(Node, first_node))),
+          first_leaf_(load<uint32_t>(node + offsetof(Node, first_leaf))),
+          kinds_(kinds(node)) {
+      const uint64_t inner = word_bytes::equal(kinds_, uint64_t(NodeKind::Internal)),
+                     instances = word_bytes::equal(kinds_, uint64_t(NodeKind::Instance));
+      node_blocks_ = word_bytes::sums_below(kNodeBytes / kBlockBytes * inner);
+      leaf_blocks_ =
+          word_bytes::sums_below(kLeafBytes / kBlockBytes * (word_bytes::kOnes - inner) +
+                                 (leaf_bytes(NodeKind::Instance) - kLeafBytes) / kBlockBytes * instances);
+    }
+    NodeRef operator[](int child) const {
+      const auto kind = NodeKind(word_bytes::get(kinds_, child));
+      const uint32_t block = kind == NodeKind::Internal ? first_node_ + word_bytes::get(node_blocks_, child)
+                                                        : first_leaf_ + word_bytes::get(leaf_blocks_, child);
+      return node_ref(block, kind);
     }
 
    private:
-    const Node& node_;
-    uint32_t next_node_, next_leaf_;
+    const uint32_t first_node_, first_leaf_;
+    const uint64_t kinds_;
+    uint64_t node_blocks_, leaf_blocks_;  // a byte for each child, counted from the first node and leaf
   };
 };
 

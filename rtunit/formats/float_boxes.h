@@ -27,32 +27,37 @@ struct FloatBoxes {
   };
   static constexpr uint32_t kNodeBytes = sizeof(Node);
 
-  // Writes the children that the ray enters in [t_min, t_max], in index order. Returns their number and
-  // counts the tests.
-  static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
-                  NodeRef* child, uint32_t& box_tests) {
-    Node node;
-    std::memcpy(&node, bytes, sizeof node);
-    float t_near[kWidth], t_far[kWidth];
-    for (int i = 0; i < kWidth; ++i) t_near[i] = -__builtin_inff(), t_far[i] = __builtin_inff();
-    for (int a = 0; a < 3; ++a) {
+  static constexpr int kPlanes = 4;
+
+  class References {
+   public:
+    explicit References(const std::byte* node) : node_(node + offsetof(Node, child)) {}
+    NodeRef operator[](int child) const { return load<NodeRef>(node_ + size_t(child) * sizeof(NodeRef)); }
+
+   private:
+    const std::byte* node_;
+  };
+
+  // Returns a mask of the children that the ray enters in [t_min, t_max], and writes where it does to
+  // `t_enter`, which has room for kPlanes. It counts the tests. Planes of missing children are whatever
+  // follows in the node, and nobody looks at what they give.
+  static uint32_t test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max,
+                       float* t_enter, uint32_t& box_tests) {
+    Four t_near = all<Four>(-__builtin_inff()), t_far = all<Four>(__builtin_inff());
+    for (size_t a = 0; a < 3; ++a) {
       const bool backward = std::signbit(space.inverse_direction[a]);
-      const float* near_plane = backward ? node.high[a] : node.low[a];
-      const float* far_plane = backward ? node.low[a] : node.high[a];
-      for (int i = 0; i < kWidth; ++i)
-        clip_slab(near_plane[i], far_plane[i], space.origin[a], space.inverse_direction[a], t_near[i],
-                  t_far[i]);
+      const auto *low = bytes + offsetof(Node, low) + a * sizeof(float) * kWidth,
+                 *high = low + sizeof(Node::low);
+      clip_slab(load<Four>(backward ? high : low), load<Four>(backward ? low : high), space.origin[a],
+                space.inverse_direction[a], t_near, t_far);
     }
-    for (int i = 0; i < kWidth; ++i) clip_to_ray(t_min, t_max, t_near[i], t_far[i]);
-    int hits = 0;
-    // A child is written in any case, and kept if it is entered: a branch could not be foreseen.
-    for (int i = 0; i < kWidth && node.child[i] != kNone; ++i) {
-      ++box_tests;
-      t_enter[hits] = t_near[i];
-      child[hits] = node.child[i];
-      hits += t_near[i] <= t_far[i];
-    }
-    return hits;
+    clip_to_ray(t_min, t_max, t_near, t_far);
+    std::memcpy(t_enter, &t_near, sizeof t_near);
+    const References child(bytes);
+    int count = 0;
+    while (count < kWidth && child[count] != kNone) ++count;
+    box_tests += uint32_t(count);
+    return mask_of(t_near <= t_far) & ((1u << count) - 1);
   }
 
   static std::vector<std::byte> encode(const BuildTree& tree) {

@@ -20,7 +20,8 @@ struct Grid {
   std::array<float, 3> origin{};
   std::array<uint8_t, 3> exponent{};  // biased as in a float, 1..254
 
-  float step(size_t axis) const { return std::bit_cast<float>(uint32_t(exponent[axis]) << 23); }
+  static float step(uint8_t exponent) { return std::bit_cast<float>(uint32_t(exponent) << 23); }
+  float step(size_t axis) const { return step(exponent[axis]); }
   static float plane(float origin, uint8_t q, float step) { return origin + float(q) * step; }
 };
 

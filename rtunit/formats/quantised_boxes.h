@@ -1,7 +1,7 @@
 // Tests, writes and decodes nodes with boxes in 8 bits per plane, for all formats of that kind.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cmath>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,46 +15,59 @@
 
 namespace glint::rt {
 
-// A format has kWidth; a Node with origin, exponent, num_children, kind, low and high; and References, whose
-// next(i) returns the reference of child i and is called in the order of the children.
+// Handles the bytes of a word at a time, the lowest first.
+namespace word_bytes {
+inline constexpr uint64_t kOnes = 0x0101'0101'0101'0101;
+// Returns 1 in each byte that equals `value`. All bytes and the value are below 8.
+constexpr uint64_t equal(uint64_t bytes, uint64_t value) {
+  return (8 * kOnes - (bytes ^ value * kOnes)) >> 3 & kOnes;
+}
+// Returns in each byte the sum of the bytes below it. The sum of all stays below 256.
+constexpr uint64_t sums_below(uint64_t bytes) {
+  return (bytes << 8) * kOnes;
+}
+constexpr uint32_t get(uint64_t bytes, int i) {
+  return uint32_t(bytes >> 8 * i & 0xff);
+}
+}  // namespace word_bytes
+
+// A format has kWidth; a Node with origin, exponent, num_children, kind, low and high; and References, which
+// is made of a Node's bytes and has the reference of child i as [i].
 template <class Format>
 struct QuantisedBoxes {
-  // This many planes fill two SIMD registers of single precision. Planes of missing children are zeros, and
-  // nobody looks at what they give.
   static constexpr int kPlanes = 8;
 
-  // Writes the children that the ray enters in [t_min, t_max], in index order. Returns their number and
-  // counts the tests.
-  static int test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max, float* t_enter,
-                  NodeRef* child, uint32_t& box_tests) {
-    typename Format::Node node;
-    std::memcpy(&node, bytes, sizeof node);
-    float t_near[kPlanes], t_far[kPlanes];
-    for (int i = 0; i < kPlanes; ++i) t_near[i] = -__builtin_inff(), t_far[i] = __builtin_inff();
-    const Grid grid{node.origin, node.exponent};
+  // Returns the kinds of a node's children, a byte each. What lies behind the last child means nothing.
+  static uint64_t kinds(const std::byte* node) {
+    return load<uint64_t>(node + offsetof(typename Format::Node, kind)) & 7 * word_bytes::kOnes;
+  }
+
+  // Returns a mask of the children that the ray enters in [t_min, t_max], and writes where it does to
+  // `t_enter`, which has room for kPlanes. It counts the tests. Planes of missing children are whatever
+  // follows in the node, and nobody looks at what they give.
+  static uint32_t test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max,
+                       float* t_enter, uint32_t& box_tests) {
+    using Node = typename Format::Node;
+    constexpr ptrdiff_t kHigher = offsetof(Node, high) - offsetof(Node, low);
+    Four t_near[2], t_far[2];
+    for (int half = 0; half < 2; ++half)
+      t_near[half] = all<Four>(-__builtin_inff()), t_far[half] = all<Four>(__builtin_inff());
+    const auto* origin = bytes + offsetof(Node, origin);
     for (size_t a = 0; a < 3; ++a) {
-      const bool backward = std::signbit(space.inverse_direction[a]);
-      uint8_t near_q[kPlanes], far_q[kPlanes];
-      std::memcpy(near_q, backward ? node.high[a] : node.low[a], Format::kWidth);
-      std::memcpy(far_q, backward ? node.low[a] : node.high[a], Format::kWidth);
-      for (int i = Format::kWidth; i < kPlanes; ++i) near_q[i] = far_q[i] = 0;
-      const float step = grid.step(a);
-      for (int i = 0; i < kPlanes; ++i)
-        clip_slab(Grid::plane(node.origin[a], near_q[i], step), Grid::plane(node.origin[a], far_q[i], step),
-                  space.origin[a], space.inverse_direction[a], t_near[i], t_far[i]);
+      const auto* low = bytes + offsetof(Node, low) + a * Format::kWidth;
+      const ptrdiff_t backward = kHigher * ptrdiff_t(is_negative(space.inverse_direction[a]));
+      const Four start = all<Four>(load<float>(origin + a * sizeof(float)));
+      const Four step = all<Four>(Grid::step(uint8_t(bytes[offsetof(Node, exponent) + a])));
+      const Numbers near_q = numbers(low + backward), far_q = numbers(low + (kHigher - backward));
+      for (int half = 0; half < 2; ++half)
+        clip_slab(start + near_q.half[half] * step, start + far_q.half[half] * step, space.origin[a],
+                  space.inverse_direction[a], t_near[half], t_far[half]);
     }
-    for (int i = 0; i < kPlanes; ++i) clip_to_ray(t_min, t_max, t_near[i], t_far[i]);
-    const int count = num_children(node);
+    for (int half = 0; half < 2; ++half) clip_to_ray(t_min, t_max, t_near[half], t_far[half]);
+    std::memcpy(t_enter, t_near, sizeof t_near);
+    const int count = num_children(uint8_t(bytes[offsetof(Node, num_children)]));
     box_tests += uint32_t(count);
-    int hits = 0;
-    typename Format::References references(node);
-    // A child is written in any case, and kept if it is entered: a branch could not be foreseen.
-    for (int i = 0; i < count; ++i) {
-      t_enter[hits] = t_near[i];
-      child[hits] = references.next(i);
-      hits += t_near[i] <= t_far[i];
-    }
-    return hits;
+    return (mask_of(t_near[0] <= t_far[0]) | mask_of(t_near[1] <= t_far[1]) << 4) & ((1u << count) - 1);
   }
 
   // Returns a node of the tree without its references.
@@ -87,11 +100,11 @@ struct QuantisedBoxes {
     typename Format::Node node;
     std::memcpy(&node, bytes, sizeof node);
     const Grid grid{node.origin, node.exponent};
-    typename Format::References references(node);
-    const int count = num_children(node);
+    const typename Format::References references(bytes);
+    const int count = num_children(node.num_children);
     for (int i = 0; i < count; ++i) {
       DecodedChild& child = out[size_t(i)];
-      child.node = references.next(i);
+      child.node = references[i];
       for (size_t a = 0; a < 3; ++a) {
         child.bounds.low[a] = Grid::plane(node.origin[a], node.low[a][i], grid.step(a));
         child.bounds.high[a] = Grid::plane(node.origin[a], node.high[a][i], grid.step(a));
@@ -101,11 +114,26 @@ struct QuantisedBoxes {
   }
 
  private:
-  // Bytes that a shader has overwritten may say anything.
-  template <class Node>
-  static int num_children(const Node& node) {
-    return node.num_children < Format::kWidth ? node.num_children : Format::kWidth;
+  // Holds the numbers of eight planes.
+  struct Numbers {
+    Four half[2];
+  };
+  static Numbers numbers(const std::byte* planes) {
+    using Longs = uint64_t __attribute__((vector_size(16)));
+    using Bytes = uint8_t __attribute__((vector_size(16)));
+    using Shorts = uint16_t __attribute__((vector_size(16)));
+    using Ints = int32_t __attribute__((vector_size(16)));
+    const auto bytes = Bytes(Longs{load<uint64_t>(planes), 0});
+    const auto shorts = Shorts(
+        __builtin_shufflevector(bytes, Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
+    const auto low = Ints(__builtin_shufflevector(shorts, Shorts{}, 0, 8, 1, 9, 2, 10, 3, 11)),
+               high = Ints(__builtin_shufflevector(shorts, Shorts{}, 4, 12, 5, 13, 6, 14, 7, 15));
+    return {{__builtin_convertvector(low, Four), __builtin_convertvector(high, Four)}};
   }
+  // Returns 1 or 0. A branch on the sign could not be foreseen.
+  static uint32_t is_negative(float x) { return std::bit_cast<uint32_t>(x) >> 31; }
+  // Bytes that a shader has overwritten may say anything.
+  static int num_children(uint8_t written) { return written < Format::kWidth ? written : Format::kWidth; }
 };
 
 }  // namespace glint::rt

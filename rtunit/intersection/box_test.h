@@ -1,7 +1,8 @@
-// Tests a ray against a box. The slabs are padded, so that rounding never loses a box that the exact ray
-// touches.
+// Tests a ray against a box, or against four boxes at a time. The slabs are padded, so that rounding never
+// loses a box that the exact ray touches.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "rtunit/intersection/four.h"
 
 namespace glint::rt {
 
@@ -13,27 +14,30 @@ inline constexpr float kSlabShrink = 1 - 8 * 0x1p-24f, kSlabGrow = 1 + 8 * 0x1p-
 
 // Clips the interval to one slab, given by the planes that the ray meets first and last. A distance that is
 // not a number (0 * inf: the ray lies in the plane) leaves the interval as it is.
-inline void clip_slab(float near_plane, float far_plane, float origin, float inverse, float& t_near,
-                      float& t_far) {
-  const float enter = (near_plane - origin) * inverse;
-  const float leave = (far_plane - origin) * inverse;
+template <class T>
+inline void clip_slab(T near_plane, T far_plane, float origin, float inverse, T& t_near, T& t_far) {
+  const T enter = (near_plane - all<T>(origin)) * all<T>(inverse);
+  const T leave = (far_plane - all<T>(origin)) * all<T>(inverse);
   t_near = enter > t_near ? enter : t_near;
   t_far = leave < t_far ? leave : t_far;
 }
 
 // These two widen the ends of an interval outwards, whatever their signs.
-inline float widen_near(float t) {
-  return t * (t > 0 ? kSlabShrink : kSlabGrow);
+template <class T>
+inline T widen_near(T t) {
+  return t * (t > T{} ? all<T>(kSlabShrink) : all<T>(kSlabGrow));
 }
-inline float widen_far(float t) {
-  return t * (t > 0 ? kSlabGrow : kSlabShrink);
+template <class T>
+inline T widen_far(T t) {
+  return t * (t > T{} ? all<T>(kSlabGrow) : all<T>(kSlabShrink));
 }
 
 // Widens the interval that was clipped to the slabs, and clips it to the ray's own.
-inline void clip_to_ray(float t_min, float t_max, float& t_near, float& t_far) {
-  const float enter = widen_near(t_near), leave = widen_far(t_far);
-  t_near = enter > t_min ? enter : t_min;
-  t_far = leave < t_max ? leave : t_max;
+template <class T>
+inline void clip_to_ray(float t_min, float t_max, T& t_near, T& t_far) {
+  const T enter = widen_near(t_near), leave = widen_far(t_far);
+  t_near = enter > all<T>(t_min) ? enter : all<T>(t_min);
+  t_far = leave < all<T>(t_max) ? leave : all<T>(t_max);
 }
 
 }  // namespace glint::rt

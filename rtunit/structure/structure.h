@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "base/types.h"
 
@@ -13,6 +15,14 @@ namespace glint::rt {
 inline constexpr uint32_t kBlockBytes = 16;
 inline constexpr uint32_t kRootBlock = 4;
 inline constexpr uint32_t kLeafBytes = 64;  // bytes of a leaf that is no instance
+
+// Returns the object whose bytes begin at `from`.
+template <class T>
+T load(const std::byte* from) {
+  T out;
+  std::memcpy(&out, from, sizeof out);
+  return out;
+}
 
 // TriangleSecond occurs only on stacks: it is the second triangle of a leaf whose first one waited for an
 // any-hit shader.

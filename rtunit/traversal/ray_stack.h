@@ -33,6 +33,11 @@ class RayStack {
       set_deep(i - kNear, entry);
   }
 
+  // Returns where the entries from `size` on lie, or null when the next `count` may not all lie near.
+  StackEntry* near_room(size_t size, size_t count) {
+    return size + count <= kNear ? near_.data() + size : nullptr;
+  }
+
  private:
   // Choice: of LumiBench's scenes, SHIP needs 16 entries and WKND 10; in PARK, one ray of fifty needs 31.
   static constexpr size_t kNear = 16;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/traversal/traversal.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 
 #include "base/check.h"
@@ -45,35 +46,67 @@ bool culled_by_kind(const RayState& s, NodeKind kind) {
          (kind == NodeKind::Procedural && has(s, ray_flag::kSkipAabbs));
 }
 
-// Takes out the children of kinds that the ray skips; returns how many are left.
-int without_skipped(const RayState& s, int hits, float* t_enter, NodeRef* child) {
+// Returns the children of `entered` whose kinds the ray does not skip.
+template <class References>
+uint32_t without_skipped(const RayState& s, uint32_t entered, const References& child) {
+  uint32_t out = 0;
+  for (uint32_t rest = entered; rest; rest &= rest - 1)
+    if (!culled_by_kind(s, kind_of(child[std::countr_zero(rest)]))) out |= rest & -rest;
+  return out;
+}
+
+// Pushes the children with the nearest on top. Of two at the same distance, the one with the lower index
+// comes above the other. `top` is where the ray's next entry lies.
+template <class References>
+void push_nearest_first(RayState& s, StackEntry* top, uint32_t entered, const float* t_enter,
+                        const References& child) {
   int count = 0;
-  for (int i = 0; i < hits; ++i) {
-    if (culled_by_kind(s, kind_of(child[i]))) continue;
-    t_enter[count] = t_enter[i];
-    child[count++] = child[i];
+  for (uint32_t rest = entered; rest; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    int at = count++;
+    for (; at > 0 && top[at - 1].t_enter <= t_enter[i]; --at) top[at] = top[at - 1];
+    top[at] = {child[i], t_enter[i]};
   }
-  return count;
+  s.stack_size = int16_t(s.stack_size + count);
+  s.stack_peak = std::max(s.stack_peak, s.stack_size);
+}
+
+// Pushes the children in the order that the ray's rules say.
+template <class Format>
+void push_by_rules(RayState& s, uint32_t entered, const float* t_enter,
+                   const typename Format::References& child) {
+  float t[Format::kWidth];
+  NodeRef node[Format::kWidth];
+  int hits = 0;
+  for (uint32_t rest = entered; rest; rest &= rest - 1, ++hits) {
+    const int i = std::countr_zero(rest);
+    t[hits] = t_enter[i];
+    node[hits] = child[i];
+  }
+  uint8_t order[Format::kWidth];
+  if (!s.rules.order)
+    nearest_first({hits, t, node}, order);
+  else
+    s.rules.order->sort({hits, t, node}, order);
+  for (int i = hits - 1; i >= 0; --i) push(s, node[order[i]], t[order[i]]);  // The first is on top.
 }
 
 template <class Format>
 void visit_internal(RayState& s, const std::byte* bytes) {
-  float t_enter[Format::kWidth];
-  NodeRef child[Format::kWidth];
-  int hits = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, child, s.box_tests);
-  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs))
-    hits = without_skipped(s, hits, t_enter, child);
-  uint8_t order[Format::kWidth];
-  if (!s.rules.order) [[likely]]
-    nearest_first({hits, t_enter, child}, order);
+  alignas(Four) float t_enter[Format::kPlanes];
+  uint32_t entered = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, s.box_tests);
+  const typename Format::References child(bytes);
+  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs)) [[unlikely]]
+    entered = without_skipped(s, entered, child);
+  StackEntry* top = s.stack.near_room(size_t(s.stack_size), Format::kWidth);
+  if (top && !s.rules.order && !s.path) [[likely]]
+    push_nearest_first(s, top, entered, t_enter, child);
   else
-    s.rules.order->sort({hits, t_enter, child}, order);
-  for (int i = hits - 1; i >= 0; --i) push(s, child[order[i]], t_enter[order[i]]);  // The nearest is on top.
+    push_by_rules<Format>(s, entered, t_enter, child);
 }
 
 void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
-  InstanceLeaf leaf;
-  std::memcpy(&leaf, bytes, sizeof leaf);
+  const auto leaf = load<InstanceLeaf>(bytes);
   ++s.instances_visited;
   if ((leaf.mask() & s.ray.cull_mask) == 0) return;
   const auto& m = leaf.world_to_object;
@@ -126,8 +159,7 @@ bool culled_by_facing(const RayState& s, bool front) {
 }
 
 void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entry) {
-  TriangleLeaf leaf;
-  std::memcpy(&leaf, bytes, sizeof leaf);
+  const auto leaf = load<TriangleLeaf>(bytes);
   const bool resumed = kind_of(entry.node) == NodeKind::TriangleSecond;
   if (!resumed) ++s.leaves_visited;
   const bool opaque = is_opaque(s, leaf.opaque != 0);
@@ -163,8 +195,7 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
 }
 
 void visit_procedural(RayState& s, const std::byte* bytes) {
-  ProceduralLeaf leaf;
-  std::memcpy(&leaf, bytes, sizeof leaf);
+  const auto leaf = load<ProceduralLeaf>(bytes);
   ++s.leaves_visited;
   ++s.box_tests;
   const bool opaque = is_opaque(s, leaf.opaque != 0);
@@ -185,6 +216,20 @@ void visit_procedural(RayState& s, const std::byte* bytes) {
   passes(s, RayStatus::NeedsIntersection);
 }
 
+void visit_leaf(RayState& s, const std::byte* bytes, const StackEntry& entry, NodeKind kind) {
+  switch (kind) {
+    case NodeKind::Instance:
+      return visit_instance(s, bytes, entry);
+    case NodeKind::Triangle:
+    case NodeKind::TriangleSecond:
+      return visit_triangles(s, bytes, entry);
+    case NodeKind::Procedural:
+      return visit_procedural(s, bytes);
+    default:
+      return break_off(s);  // The reference comes from a structure that a shader has overwritten.
+  }
+}
+
 // Notes the node that is about to be visited as the last of its depth.
 void remember(const RayState& s, RayPath& path) {
   path.depth = uint8_t(path.parent[size_t(s.stack_size) - 1] + 1);
@@ -197,23 +242,11 @@ void step_as(RayState& s, const std::byte* bytes) {
     remember(s, *s.path);
   const StackEntry entry = s.stack[size_t(--s.stack_size)];
   ++s.nodes_visited;
-  switch (kind_of(entry.node)) {
-    case NodeKind::Internal:
-      visit_internal<Format>(s, bytes);
-      break;
-    case NodeKind::Instance:
-      visit_instance(s, bytes, entry);
-      break;
-    case NodeKind::Triangle:
-    case NodeKind::TriangleSecond:
-      visit_triangles(s, bytes, entry);
-      break;
-    case NodeKind::Procedural:
-      visit_procedural(s, bytes);
-      break;
-    default:
-      return break_off(s);
-  }
+  const NodeKind kind = kind_of(entry.node);
+  if (kind == NodeKind::Internal) [[likely]]
+    visit_internal<Format>(s, bytes);
+  else
+    visit_leaf(s, bytes, entry, kind);
   if (s.status != RayStatus::Traversing) return;
   settle(s);
   if (s.table && s.status == RayStatus::Traversing && s.table->is_full()) [[unlikely]] {
@@ -221,7 +254,6 @@ void step_as(RayState& s, const std::byte* bytes) {
     ++s.table->overflows;
   }
 }
-
 template <class Format>
 void run_as(RayState& s, const mem::AddressSpace& memory) {
   while (s.status == RayStatus::Traversing) {
@@ -275,8 +307,7 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   if (s.ray.structure == 0) return true;
   const auto* bytes = memory.find(s.ray.structure, sizeof(StructureHeader));
   if (!bytes) return false;
-  StructureHeader header;
-  std::memcpy(&header, bytes, sizeof header);
+  const auto header = load<StructureHeader>(bytes);
   if (header.magic != StructureHeader::kMagic || header.level != 1 ||
       header.format >= uint8_t(FormatId::Count))
     return false;
