@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "base/check.h"
 #include "base/num_lanes.h"
@@ -11,20 +12,9 @@
 namespace glint::rt {
 namespace {
 
-mem::Traffic traffic_of(NodeKind kind) {
-  switch (kind) {
-    case NodeKind::Internal:
-      return mem::Traffic::RtNode;
-    case NodeKind::Instance:
-      return mem::Traffic::RtInstance;
-    case NodeKind::Triangle:
-    case NodeKind::TriangleSecond:
-      return mem::Traffic::RtTriangle;
-    case NodeKind::Procedural:
-      return mem::Traffic::RtProcedural;
-  }
-  return mem::Traffic::RtNode;
-}
+// Gives the traffic of a node's requests, by NodeKind.
+constexpr mem::Traffic kTraffic[] = {mem::Traffic::RtNode, mem::Traffic::RtInstance, mem::Traffic::RtTriangle,
+                                     mem::Traffic::RtProcedural, mem::Traffic::RtTriangle};
 
 }  // namespace
 
@@ -33,6 +23,7 @@ FetchQueue::FetchQueue(const Params& params, const mem::AddressSpace& memory, me
     : max_reads_(params.mshr_entries),
       responses_per_cycle_(params.responses_per_cycle),
       request_bytes_(params.request_bytes),
+      line_bytes_(l1.line_bytes()),
       scheduler_name_(params.scheduler.name),
       memory_(memory),
       l1_(l1),
@@ -52,15 +43,7 @@ Cycle FetchQueue::next_event(Cycle now) const {
 // The policy picks the warp. Model: among its lanes that want a read, the one with the lowest number is
 // served first.
 bool FetchQueue::choose(Cycle now) {
-  if (is_full() || !buffer_.has_wanting_lanes()) return false;
-  bool any = false;
-  for (uint32_t i = 0; i < buffer_.size(); ++i) {
-    const BufferSlot& slot = buffer_[i];
-    const bool ready = slot.is_used && slot.wanting && slot.arrived < now;
-    views_[i] = {ready, num_lanes(slot.wanting), slot.age, slot.arrived};
-    any |= ready;
-  }
-  if (!any) return false;
+  if (is_full() || !buffer_.has_wanting_lanes() || !has_ready_warp(now)) return false;
   const uint32_t picked = scheduler_->pick(views_);
   GLINT_CHECK(picked < views_.size() && views_[picked].ready,
               "scheduler '{}' picked slot {}, which is not ready", scheduler_name_, picked);
@@ -69,6 +52,7 @@ bool FetchQueue::choose(Cycle now) {
   const Read read = slot.read[first];
   const uint64_t partners = coalescer_->partners(picked, views_);
   sending_ = add(picked, partners ? lanes_wanting(slot, read.what) : LaneMask{1} << first, read);
+  prepare_request();
   ++num_reads_;
   ++stats_.fetches;
   stats_.merged_lanes += num_lanes(reads_[sending_].lanes) - 1;
@@ -84,10 +68,32 @@ bool FetchQueue::choose(Cycle now) {
   return true;
 }
 
+// Looks at the slots in which something has changed. A warp takes part from the cycle after its arrival on.
+bool FetchQueue::has_ready_warp(Cycle now) {
+  for (uint64_t rest = buffer_.take_changes(); rest; rest &= rest - 1) {
+    const auto i = uint32_t(std::countr_zero(rest));
+    const BufferSlot& slot = buffer_[i];
+    const bool is_new = slot.arrived >= now, ready = slot.wanting && !is_new;
+    views_[i] = {ready, num_lanes(slot.wanting), slot.age, slot.arrived};
+    ready_ = (ready_ & ~(uint64_t{1} << i)) | uint64_t{ready} << i;
+    if (is_new) buffer_.note_change(i);
+  }
+  return ready_ != 0;
+}
+
 LaneMask FetchQueue::lanes_wanting(const BufferSlot& slot, const Fetch& what) {
+  const auto low = uint32_t(what.address);
+  const FourBits wanted{low, low, low, low};
   LaneMask out = 0;
-  for_each_lane(slot.wanting,
-                [&](int lane) { out |= LaneMask{slot.read[size_t(lane)].what == what} << lane; });
+  for (int i = 0; i < kLanes; i += 4) {
+    FourBits part;
+    std::memcpy(&part, &slot.low_address[size_t(i)], sizeof part);
+    out |= LaneMask{mask_of(part == wanted)} << i;
+  }
+  for_each_lane(out &= slot.wanting, [&](int lane) {
+    if (slot.read[size_t(lane)].what != what) [[unlikely]]
+      out &= ~(LaneMask{1} << lane);
+  });
   return out;
 }
 
@@ -99,28 +105,34 @@ uint32_t FetchQueue::add(uint32_t slot, LaneMask lanes, const Read& read) {
   return index;
 }
 
-// Sends the next sectors of the node: at most what a request holds, and only sectors of one line. A node that
-// begins within a sector takes the whole of it.
-bool FetchQueue::send(Cycle now) {
-  ReadInFlight& read = reads_[sending_];
-  const uint32_t bytes = read.read.what.bytes;
+// Makes the request for the next sectors of the node: at most what a request holds, and only sectors of one
+// line. A node that begins within a sector takes the whole of it.
+void FetchQueue::prepare_request() {
+  const ReadInFlight& read = reads_[sending_];
   const Address at = memory_.physical(read.read.what.address + read.sent);
-  const Address offset = at & (l1_.line_bytes() - 1);
+  const Address offset = at & (line_bytes_ - 1);
   const Address first = offset / mem::kSectorBytes, room = request_bytes_ / mem::kSectorBytes;
-  const Address end =
-      std::min<Address>({offset + bytes - read.sent, (first + room) * mem::kSectorBytes, l1_.line_bytes()});
-  const uint32_t count = uint32_t((end + mem::kSectorBytes - 1) / mem::kSectorBytes - first);
-  mem::Request request;
-  request.line = at - offset;
-  request.sectors = uint8_t(((1u << count) - 1) << first);
-  request.traffic = traffic_of(read.read.what.kind);
-  request.token = sending_;
-  if (!l1_.access(now, mem::Client::RtUnit, request)) return false;
+  const Address end = std::min<Address>(
+      {offset + read.read.what.bytes - read.sent, (first + room) * mem::kSectorBytes, line_bytes_});
+  num_sectors_ = uint32_t((end + mem::kSectorBytes - 1) / mem::kSectorBytes - first);
+  num_bytes_ = uint32_t(end - offset);
+  request_.line = at - offset;
+  request_.sectors = uint8_t(((1u << num_sectors_) - 1) << first);
+  request_.traffic = kTraffic[size_t(read.read.what.kind)];
+  request_.token = sending_;
+}
+
+bool FetchQueue::send(Cycle now) {
+  if (!l1_.access(now, mem::Client::RtUnit, request_)) return false;
   ++stats_.requests;
-  stats_.sectors += count;
+  stats_.sectors += num_sectors_;
+  ReadInFlight& read = reads_[sending_];
   ++read.unanswered;
-  read.sent += uint32_t(end - offset);
-  if (read.sent == bytes) sending_ = ReadInFlight::kNone;
+  read.sent += num_bytes_;
+  if (read.sent == read.read.what.bytes)
+    sending_ = ReadInFlight::kNone;
+  else
+    prepare_request();
   return true;
 }
 

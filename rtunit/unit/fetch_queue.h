@@ -9,6 +9,7 @@
 
 #include "memsys/address_space.h"
 #include "memsys/l1_port.h"
+#include "memsys/request.h"
 #include "rtunit/params.h"
 #include "rtunit/unit/request_source.h"
 #include "rtunit/unit/warp_buffer.h"
@@ -75,10 +76,13 @@ class FetchQueue final : public RequestSource {
   }
 
  private:
+  bool has_ready_warp(Cycle now);
+  void prepare_request();
   uint32_t add(uint32_t slot, LaneMask lanes, const Read& read);
   static LaneMask lanes_wanting(const BufferSlot& slot, const Fetch& what);
 
   const uint32_t max_reads_, responses_per_cycle_, request_bytes_;  // max_reads_ 0: no limit
+  const uint32_t line_bytes_;
   const std::string scheduler_name_;
   const mem::AddressSpace& memory_;
   mem::L1Port& l1_;
@@ -86,11 +90,14 @@ class FetchQueue final : public RequestSource {
   RtStats& stats_;
   const std::unique_ptr<RayScheduler> scheduler_;
   const std::unique_ptr<Coalescer> coalescer_;
-  std::vector<WarpView> views_;
+  std::vector<WarpView> views_;      // by slot; has_ready_warp() keeps them up to date
+  uint64_t ready_ = 0;               // bit i: views_[i] is ready
   std::vector<ReadInFlight> reads_;  // at most one per lane
   std::vector<uint32_t> free_;
   uint32_t sending_ = ReadInFlight::kNone;
-  uint32_t num_reads_ = 0;  // A read that warps share counts as one.
+  mem::Request request_;                      // the next one of the read that is being sent
+  uint32_t num_sectors_ = 0, num_bytes_ = 0;  // of request_
+  uint32_t num_reads_ = 0;                    // A read that warps share counts as one.
 };
 
 }  // namespace glint::rt

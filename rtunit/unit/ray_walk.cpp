@@ -15,6 +15,8 @@ RayWalk::RayWalk(const Params& params, const mem::AddressSpace& memory, WarpBuff
       memory_(memory),
       buffer_(buffer),
       stats_(stats),
+      nodes_of_kind_{&stats.internal_nodes, &stats.instance_leaves, &stats.triangle_leaves,
+                     &stats.procedural_leaves, &stats.triangle_leaves},
       child_order_(params.child_order.make({})) {
 }
 
@@ -45,7 +47,9 @@ void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
   if (ray.status == RayStatus::Traversing) {
     const Fetch node = next_fetch(ray);
     if (const std::byte* bytes = memory_.find(node.address, node.bytes)) {
-      __builtin_prefetch(bytes);  // The node is tested many cycles from now.
+      // The node is tested many cycles from now.
+      __builtin_prefetch(bytes);
+      __builtin_prefetch(bytes + node.bytes - 1);
       return buffer_.want(slot, lane, {node, nullptr, pipe_of(node.kind)});
     }
     break_off(ray);
@@ -74,7 +78,8 @@ void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
   step(ray, memory_.find(node.address, node.bytes));
   stats_.box_tests += ray.box_tests - boxes;
   stats_.triangle_tests += ray.triangle_tests - triangles;
-  count_node(node.kind);
+  ++stats_.nodes;
+  ++*nodes_of_kind_[size_t(node.kind)];
   for (WalkHook* hook : hooks_) hook->visited({slot, lane, ray, node.kind, ray.hits_in_interval - hits});
 }
 
@@ -94,25 +99,6 @@ void RayWalk::stop(uint32_t slot, int lane, Cycle now) {
   else
     ++stats_.suspended;
   buffer_.stop(slot, lane, now);
-}
-
-void RayWalk::count_node(NodeKind kind) {
-  ++stats_.nodes;
-  switch (kind) {
-    case NodeKind::Internal:
-      ++stats_.internal_nodes;
-      break;
-    case NodeKind::Instance:
-      ++stats_.instance_leaves;
-      break;
-    case NodeKind::Triangle:
-    case NodeKind::TriangleSecond:
-      ++stats_.triangle_leaves;
-      break;
-    case NodeKind::Procedural:
-      ++stats_.procedural_leaves;
-      break;
-  }
 }
 
 }  // namespace glint::rt

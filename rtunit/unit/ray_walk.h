@@ -2,6 +2,7 @@
 // stops.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -42,12 +43,12 @@ class RayWalk {
  private:
   void visit(uint32_t slot, int lane, Cycle now);
   void stop(uint32_t slot, int lane, Cycle now);
-  void count_node(NodeKind kind);
 
   const bool retest_;
   const mem::AddressSpace& memory_;
   WarpBuffer& buffer_;
   RtStats& stats_;
+  const std::array<stats::Counter*, 5> nodes_of_kind_;  // statistics, by NodeKind
   const std::unique_ptr<ChildOrder> child_order_;
   std::vector<WalkHook*> hooks_;
   Probe<NodeVisited> node_visited_;

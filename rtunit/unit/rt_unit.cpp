@@ -76,9 +76,7 @@ void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* stat
   for_each_lane(mask, [&](int lane) { walk_.start(slot, lane, now); });
 }
 
-void RtUnit::tick(Cycle now) {
-  if (now < due_ && !l1_.has_answer(now, mem::Client::RtUnit)) return;
-  account_.skip_to(now);
+void RtUnit::run(Cycle now) {
   buffer_.retire(now);
   for (const auto& step : before_tests_) step(now);
   pipelines_.finish_tests(now);

@@ -51,7 +51,9 @@ class RtUnit final : public RtPort {
   bool can_accept() const override { return buffer_.has_room(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
   std::optional<uint32_t> pop_completion(Cycle) override { return buffer_.pop_completion(); }
-  void tick(Cycle now) override;
+  void tick(Cycle now) override {
+    if (now >= due_ || l1_.has_answer(now, mem::Client::RtUnit)) run(now);
+  }
   // The L1's answers are new input, and the L1's next_event() tells of them.
   Cycle next_event(Cycle now) const override { return due_ == kNever ? kNever : std::max(due_, now + 1); }
 
@@ -59,7 +61,10 @@ class RtUnit final : public RtPort {
 
   // Accounts the cycles up to `end`. It is called once, at the end of the run.
   void finish(Cycle end) { account_.skip_to(end); }
-  const RtStats& stats() const { return stats_; }
+  const RtStats& stats() const {
+    account_.settle();
+    return stats_;
+  }
   // Returns RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
   uint64_t warp_cycles_until(Cycle at) const { return account_.warp_cycles_until(at); }
   uint32_t num_resident() const { return buffer_.num_resident(); }
@@ -78,6 +83,7 @@ class RtUnit final : public RtPort {
   template <class Part, class... Args>
   Part& add(Args&&... args);
 
+  void run(Cycle now);
   void receive(Cycle now);
   Stall send_requests(Cycle now);
   RequestSource* next_source(Cycle now);

@@ -3,7 +3,6 @@
 #include "rtunit/unit/test_pipelines.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/num_lanes.h"
 
@@ -23,52 +22,57 @@ Pipe TestPipelines::add(const PipelineParams& params) {
 
 void TestPipelines::push(const Read& read, uint32_t slot, LaneMask lanes) {
   const uint8_t starts = starts_of(read);
-  num_waiting_ += num_lanes(lanes);
-  for_each_lane(lanes, [&](int lane) { pipes_[read.pipe].waiting.push({slot, uint8_t(lane), starts}); });
+  Pipeline& pipe = pipes_[read.pipe];
+  pipe.waiting.push({slot, lanes, starts, starts});
+  pipe.num_waiting += num_lanes(lanes);
+  with_waiting_ |= 1u << read.pipe;
 }
 
 uint8_t TestPipelines::starts_of(const Read& read) const {
   if (read.pipe != kTrianglePipe || read.what.kind != NodeKind::Triangle) return 1;
-  TriangleLeaf leaf;
-  std::memcpy(&leaf, memory_.find(read.what.address, sizeof leaf), sizeof leaf);
+  const auto leaf = load<TriangleLeaf>(memory_.find(read.what.address, sizeof(TriangleLeaf)));
   return leaf.count > 1 ? 2 : 1;
 }
 
-void TestPipelines::finish_tests(Cycle now) {
-  for (Pipeline& pipe : pipes_)
+void TestPipelines::end_tests(Cycle now) {
+  next_end_ = kNever;
+  for (Pipeline& pipe : pipes_) {
     while (!pipe.running.empty() && pipe.running.front().ready <= now) {
       const Running done = pipe.running.front();
       pipe.running.pop();
-      --num_running_;
       walk_.end_test(done.slot, done.lane, now);
     }
-}
-
-void TestPipelines::start_tests(Cycle now) {
-  for (Pipeline& pipe : pipes_) {
-    if (pipe.waiting.empty()) continue;
-    if (!pipe.is_used || now >= pipe.interval_start + pipe.params.interval) {
-      pipe.is_used = true;
-      pipe.interval_start = now;
-      pipe.started = 0;
-    }
-    for (; pipe.started < pipe.params.units && !pipe.waiting.empty(); ++pipe.started) {
-      Test& test = pipe.waiting.front();
-      if (--test.starts_left) continue;
-      walk_.start_test(test.slot, test.lane, now);
-      pipe.running.push({now + pipe.params.latency, test.slot, test.lane});
-      pipe.waiting.pop();
-      --num_waiting_;
-      ++num_running_;
-    }
+    if (!pipe.running.empty()) next_end_ = std::min(next_end_, pipe.running.front().ready);
   }
 }
 
+void TestPipelines::start_tests(Cycle now, uint32_t index) {
+  Pipeline& pipe = pipes_[index];
+  if (!pipe.is_used || now >= pipe.interval_start + pipe.params.interval) {
+    pipe.is_used = true;
+    pipe.interval_start = now;
+    pipe.started = 0;
+  }
+  for (; pipe.started < pipe.params.units && !pipe.waiting.empty(); ++pipe.started) {
+    Waiting& next = pipe.waiting.front();
+    if (--next.starts_left) continue;
+    next.starts_left = next.starts;
+    const auto lane = uint8_t(std::countr_zero(next.lanes));
+    walk_.start_test(next.slot, lane, now);
+    pipe.running.push({now + pipe.params.latency, next.slot, lane});
+    next_end_ = std::min(next_end_, now + pipe.params.latency);
+    --pipe.num_waiting;
+    next.lanes &= next.lanes - 1;
+    if (next.lanes == 0) pipe.waiting.pop();
+  }
+  if (pipe.waiting.empty()) with_waiting_ &= ~(1u << index);
+}
+
 Cycle TestPipelines::next_event() const {
-  Cycle next = kNever;
-  for (const Pipeline& pipe : pipes_) {
-    if (!pipe.running.empty()) next = std::min(next, pipe.running.front().ready);
-    if (!pipe.waiting.empty()) next = std::min(next, pipe.interval_start + pipe.params.interval);
+  Cycle next = next_end_;
+  for (uint32_t rest = with_waiting_; rest; rest &= rest - 1) {
+    const Pipeline& pipe = pipes_[size_t(std::countr_zero(rest))];
+    next = std::min(next, pipe.interval_start + pipe.params.interval);
   }
   return next;
 }

@@ -1,6 +1,7 @@
 // Tests boxes, triangles and instances in pipelines that have a rate and a latency.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,19 +21,26 @@ class TestPipelines {
 
   // Puts a read that has arrived into its pipeline, for each of these lanes.
   void push(const Read& read, uint32_t slot, LaneMask lanes);
-  void finish_tests(Cycle now);
-  void start_tests(Cycle now);
+  void finish_tests(Cycle now) {
+    if (now >= next_end_) end_tests(now);
+  }
+  void start_tests(Cycle now) {
+    for (uint32_t rest = with_waiting_; rest; rest &= rest - 1)
+      start_tests(now, uint32_t(std::countr_zero(rest)));
+  }
   Cycle next_event() const;
 
-  bool is_any_waiting() const { return num_waiting_ != 0; }
-  bool is_any_running() const { return num_running_ != 0; }
-  size_t num_tests(Pipe pipe) const { return pipes_[pipe].waiting.size() + pipes_[pipe].running.size(); }
+  bool is_any_waiting() const { return with_waiting_ != 0; }
+  bool is_any_running() const { return next_end_ != kNever; }
+  size_t num_tests(Pipe pipe) const { return pipes_[pipe].num_waiting + pipes_[pipe].running.size(); }
 
  private:
-  struct Test {
+  // Holds the lanes of a warp that wait for their tests of a node, of which the lowest is next.
+  struct Waiting {
     uint32_t slot = 0;
-    uint8_t lane = 0;
-    uint8_t starts_left = 1;  // A leaf of two triangles needs two.
+    LaneMask lanes = 0;
+    uint8_t starts = 1;       // A leaf of two triangles needs two.
+    uint8_t starts_left = 1;  // of the next lane
   };
   struct Running {
     Cycle ready = 0;
@@ -42,19 +50,23 @@ class TestPipelines {
   struct Pipeline {
     Pipeline(const PipelineParams& p, size_t room) : params(p), waiting(room), running(room) {}
     PipelineParams params;
-    mem::Ring<Test> waiting;
+    mem::Ring<Waiting> waiting;
     mem::Ring<Running> running;
+    uint32_t num_waiting = 0;  // lanes in `waiting`
     Cycle interval_start = 0;
     uint32_t started = 0;  // tests started in the interval that began at interval_start
     bool is_used = false;  // interval_start is valid
   };
   uint8_t starts_of(const Read& read) const;
+  void end_tests(Cycle now);
+  void start_tests(Cycle now, uint32_t pipe);
 
   const size_t num_lanes_;
   const mem::AddressSpace& memory_;
   RayWalk& walk_;
-  std::vector<Pipeline> pipes_;                 // by Pipe
-  uint32_t num_waiting_ = 0, num_running_ = 0;  // tests in all pipelines
+  std::vector<Pipeline> pipes_;  // by Pipe
+  uint32_t with_waiting_ = 0;    // bit i: tests wait in pipes_[i]
+  Cycle next_end_ = kNever;      // when the first of all running tests ends
 };
 
 }  // namespace glint::rt

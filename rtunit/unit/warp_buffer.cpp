@@ -29,6 +29,7 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
   free->arrived = now;
   free->unsent_writes = 0;
   free->next_exit = 0;
+  note_change(slot);
   ++num_resident_;
   num_rays_ += num_lanes(mask);
   ++stats_.warps;
@@ -37,9 +38,12 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
 }
 
 void WarpBuffer::want(uint32_t slot, int lane, const Read& read) {
-  slots_[slot].read[size_t(lane)] = read;
-  slots_[slot].wanting |= LaneMask{1} << lane;
+  BufferSlot& at = slots_[slot];
+  at.read[size_t(lane)] = read;
+  at.low_address[size_t(lane)] = uint32_t(read.what.address);
+  at.wanting |= LaneMask{1} << lane;
   wanting_ |= uint64_t{1} << slot;
+  note_change(slot);
 }
 
 void WarpBuffer::stop(uint32_t slot, int lane, Cycle now) {
@@ -59,7 +63,7 @@ void WarpBuffer::leave(uint32_t slot, Cycle now) {
   finished_.push(slot);
 }
 
-void WarpBuffer::retire(Cycle now) {
+void WarpBuffer::retire_finished(Cycle now) {
   for (uint32_t i = 0; i < retires_per_cycle_ && !finished_.empty(); ++i) {
     const uint32_t index = finished_.front();
     BufferSlot& slot = slots_[index];
@@ -70,13 +74,6 @@ void WarpBuffer::retire(Cycle now) {
     slot.is_used = false;
     --num_resident_;
   }
-}
-
-std::optional<uint32_t> WarpBuffer::pop_completion() {
-  if (completions_.empty()) return std::nullopt;
-  const uint32_t warp_slot = completions_.front();
-  completions_.pop();
-  return warp_slot;
 }
 
 }  // namespace glint::rt

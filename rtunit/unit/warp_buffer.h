@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/probe.h"
 #include "memsys/ring.h"
+#include "rtunit/intersection/four.h"
 #include "rtunit/params.h"
 #include "rtunit/traversal/ray_state.h"
 #include "rtunit/unit/read.h"
@@ -37,6 +39,9 @@ struct BufferSlot {
   uint32_t unsent_writes = 0;     // The warp stays until the L1 has taken them.
   size_t next_exit = 0;           // first of the buffer's exits that the warp has not passed
   std::array<Read, kLanes> read;  // reads of the lanes that want one, wait for one or are in a test
+  // These are the low words of the reads' addresses. They mostly tell two nodes apart and are compared at
+  // once.
+  alignas(FourBits) std::array<uint32_t, kLanes> low_address{};
 
   // Returns the ray that a lane works for.
   RayState& ray_of(int lane) const { return states[lane]; }
@@ -69,15 +74,26 @@ class WarpBuffer {
   void serve(uint32_t slot, LaneMask lanes) {
     slots_[slot].wanting &= ~lanes;
     if (slots_[slot].wanting == 0) wanting_ &= ~(uint64_t{1} << slot);
+    note_change(slot);
   }
+  // Returns the slots, as a mask, whose warp or wanting lanes have changed since the last call.
+  uint64_t take_changes() { return std::exchange(changed_, 0); }
+  void note_change(uint32_t slot) { changed_ |= uint64_t{1} << slot; }
   void stop(uint32_t slot, int lane, Cycle now);
   void add_writes(uint32_t slot, uint32_t count) { slots_[slot].unsent_writes += count; }
   void write_sent(uint32_t slot, Cycle now);
   // Lets the warp pass the exits that it has not passed yet.
   void leave(uint32_t slot, Cycle now);
   // Gives back warps that left in earlier cycles, so a slot that becomes free now is usable from now on.
-  void retire(Cycle now);
-  std::optional<uint32_t> pop_completion();
+  void retire(Cycle now) {
+    if (!finished_.empty()) retire_finished(now);
+  }
+  std::optional<uint32_t> pop_completion() {
+    if (completions_.empty()) return std::nullopt;
+    const uint32_t warp_slot = completions_.front();
+    completions_.pop();
+    return warp_slot;
+  }
 
   bool has_leaving_warps() const { return !finished_.empty() || !completions_.empty(); }
   bool has_wanting_lanes() const { return wanting_ != 0; }
@@ -86,11 +102,14 @@ class WarpBuffer {
   Probe<WarpMoved>& warp_moved() { return warp_moved_; }
 
  private:
+  void retire_finished(Cycle now);
+
   const uint32_t retires_per_cycle_;
   RtStats& stats_;
   Probe<WarpMoved> warp_moved_;
   std::vector<BufferSlot> slots_;
   uint64_t wanting_ = 0;  // bit i: some lane of slot i wants a read
+  uint64_t changed_ = 0;  // bit i: take_changes() tells of slot i
   std::vector<WarpExit*> exits_;
   mem::Ring<uint32_t> finished_;     // slots whose warps have passed all exits
   mem::Ring<uint32_t> completions_;  // the core's warp slots, to be given back
