@@ -57,6 +57,14 @@ constexpr uint32_t line_key(Address line) {
   return uint32_t(line / kSectorBytes);
 }
 
+// Returns the number of sectors in a mask. std::popcount is a call of a library where the compiler may not
+// assume the instruction.
+constexpr uint32_t num_sectors(uint8_t mask) {
+  constexpr uint64_t kBits = 0x4332'3221'3221'2110;  // the number of bits of each hexadecimal digit
+  return uint32_t((kBits >> 4 * (mask & 15) & 15) + (kBits >> 4 * (mask >> 4) & 15));
+}
+static_assert(num_sectors(0) == 0 && num_sectors(0xff) == 8 && num_sectors(0x96) == 4);
+
 using Token = uint32_t;  // name that the requester gives a request, which comes back unchanged
 
 // Bit i stands for the i-th of 32 equal parts of a line; in a line of 128 bytes the parts are words of 4

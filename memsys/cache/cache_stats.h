@@ -1,7 +1,6 @@
 // Declares the statistics that L1 and L2 have in common. Most of them are counted by traffic class.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <bit>
 #include <cstdint>
 #include <iterator>
 #include <string>
@@ -53,7 +52,7 @@ struct CacheStats {
     if (missing == 0) return hits.add(traffic);
     if (fetched == 0) return pending_hits.add(traffic);
     misses.add(traffic);
-    sectors_fetched.add(traffic, uint64_t(std::popcount(fetched)));
+    sectors_fetched.add(traffic, num_sectors(fetched));
     if (seen.insert_if_new(line)) cold_misses.add(traffic);
   }
 };

@@ -3,6 +3,7 @@
 #include "memsys/cache/l1_cache.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <fmt/format.h>
 #include <optional>
@@ -15,6 +16,7 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, C
                  stats::Group* parent)
     : params_(params.l1),
       line_bytes_(params.line),
+      line_shift_(uint32_t(std::countr_zero(params.line))),
       core_(core),
       allocate_on_miss_(params.l1.allocate == "on_miss"),
       map_(map),
@@ -58,7 +60,8 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
       slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
   uint8_t fetched = 0;
   if (missing == 0) {
-    answers_[size_t(client)].hits.push({now + params_.hit_latency, order_, request.token});
+    Answers& answers = answers_[size_t(client)];
+    answers.push(answers.hits, {now + params_.hit_latency, order_, request.token});
     latencies_.add(request.traffic, params_.hit_latency);
   } else {
     uint32_t entry = mshr_.find(request.line);
@@ -192,21 +195,25 @@ void L1Cache::evict(Cycle now, const TagArray::Line& victim) {
   queue_packet(now, {.line = victim.address, .sectors = victim.dirty, .write = true, .traffic = traffic});
 }
 
-std::optional<Token> L1Cache::pop(Cycle now, Client client) {
-  Answers& a = answers_[size_t(client)];
-  const bool hit = !a.hits.empty() && a.hits.front().ready <= now;
-  const bool fill = !a.fills.empty() && a.fills.front().ready <= now;
-  if (!hit && !fill) return std::nullopt;
-  bool take_hit = hit;
-  if (hit && fill) {
-    const Completion &h = a.hits.front(), &f = a.fills.front();
-    take_hit = h.ready != f.ready ? h.ready < f.ready : h.order < f.order;
+// Takes the answer that is ready first; of two that are ready in the same cycle, the one accepted first.
+Token L1Cache::Answers::pop() {
+  bool is_hit = fills.empty();
+  if (!hits.empty() && !fills.empty()) {
+    const Completion &h = hits.front(), &f = fills.front();
+    is_hit = h.ready != f.ready ? h.ready < f.ready : h.order < f.order;
   }
-  Ring<Completion>& ring = take_hit ? a.hits : a.fills;
+  Ring<Completion>& ring = is_hit ? hits : fills;
   const Token token = ring.front().token;
   ring.pop();
-  ++tokens_returned_;
+  at = std::min(hits.empty() ? kNever : hits.front().ready, fills.empty() ? kNever : fills.front().ready);
   return token;
+}
+
+std::optional<Token> L1Cache::pop(Cycle now, Client client) {
+  Answers& answers = answers_[size_t(client)];
+  if (answers.at > now) return std::nullopt;
+  ++tokens_returned_;
+  return answers.pop();
 }
 
 Cycle L1Cache::next_departure() const {
@@ -219,7 +226,7 @@ Cycle L1Cache::next_fill() const {
   return std::max(port_.received(), fill_not_before_);
 }
 
-void L1Cache::tick(Cycle now) {
+void L1Cache::run(Cycle now) {
   port_.take_credits(now);
   for (;;) {
     const Cycle departure = next_departure(), arrival = next_fill();
@@ -256,7 +263,8 @@ bool L1Cache::fill(Cycle now) {
   fill_not_before_ = now + 1;
   if (is_kept) filled_cycle_ = now, filled_bank_ = bank_of(reply.line);
   if (reply.is_atomic) {
-    answers_[size_t(reply.client)].fills.push({now, reply.order, reply.token});
+    Answers& answers = answers_[size_t(reply.client)];
+    answers.push(answers.fills, {now, reply.order, reply.token});
     latencies_.add(Traffic::ShaderAtomic, uint32_t(now) - reply.stamps.accepted);
   } else {
     answer_waiters(now, reply);
@@ -282,7 +290,8 @@ void L1Cache::answer_waiters(Cycle now, const Reply& reply) {
   mshr_.arrive(mshr_.find(reply.line), reply.sectors, [&](Waiter& waiter) {
     waiter.missing &= uint8_t(~reply.sectors);
     if (waiter.missing) return false;
-    answers_[size_t(waiter.client)].fills.push({now, waiter.order, waiter.token});
+    Answers& answers = answers_[size_t(waiter.client)];
+    answers.push(answers.fills, {now, waiter.order, waiter.token});
     count_miss(waiter, now, reply.stamps);
     return true;
   });
@@ -301,10 +310,7 @@ void L1Cache::count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps) 
 
 Cycle L1Cache::next_event(Cycle now) const {
   Cycle next = std::min({next_departure(), next_fill(), port_.next_credit()});
-  for (const Answers& a : answers_) {
-    if (!a.hits.empty()) next = std::min(next, a.hits.front().ready);
-    if (!a.fills.empty()) next = std::min(next, a.fills.front().ready);
-  }
+  for (const Answers& answers : answers_) next = std::min(next, answers.at);
   return next == kNever ? kNever : std::max(next, now);
 }
 

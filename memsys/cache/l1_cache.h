@@ -2,6 +2,7 @@
 // writes local memory back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -79,12 +80,10 @@ class L1Cache final : public L1Port {
 
   bool access(Cycle now, Client client, const Request& request) override;
   std::optional<Token> pop(Cycle now, Client client) override;
-  bool has_answer(Cycle now, Client client) const override {
-    const Answers& a = answers_[size_t(client)];
-    return (!a.hits.empty() && a.hits.front().ready <= now) ||
-           (!a.fills.empty() && a.fills.front().ready <= now);
+  bool has_answer(Cycle now, Client client) const override { return answers_[size_t(client)].at <= now; }
+  void tick(Cycle now) override {
+    if (has_work(now)) run(now);
   }
-  void tick(Cycle now) override;
   Cycle next_event(Cycle now) const override;
   uint32_t line_bytes() const override { return line_bytes_; }
   std::string describe() const override;
@@ -124,14 +123,27 @@ class L1Cache final : public L1Port {
   // Holds the completed reads of one client; each ring is in the order in which they are ready.
   struct Answers {
     Ring<Completion> hits, fills;
+    Cycle at = kNever;  // when the first of both is ready
+
+    void push(Ring<Completion>& ring, const Completion& completion) {
+      ring.push(completion);
+      at = std::min(at, completion.ready);
+    }
+    Token pop();
   };
 
+  // Returns whether a credit has come, or whether a packet may leave or a reply may be taken.
+  bool has_work(Cycle now) const {
+    return port_.arrival() <= now || port_.next_credit() <= now ||
+           (!miss_queue_.empty() && miss_queue_.front().ready <= now);
+  }
+  void run(Cycle now);
   bool refuse(Refusal reason);
   bool read(Cycle now, Client client, const Request& request);
   bool write_through(Cycle now, const Request& request);
   bool write_back(Cycle now, const Request& request);
   uint64_t bank_of(Address line) const {
-    return uint64_t{1} << (params_.banks == 1 ? 0 : line / line_bytes_ % params_.banks);
+    return uint64_t{1} << (params_.banks == 1 ? 0 : uint32_t(line >> line_shift_) % params_.banks);
   }
   bool pass_atomic(Cycle now, Client client, const Request& request);
   bool queue_room(uint32_t packets) const { return miss_queue_.size() + packets <= params_.miss_queue; }
@@ -148,7 +160,7 @@ class L1Cache final : public L1Port {
   void count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps);
 
   const L1Params params_;
-  const uint32_t line_bytes_;
+  const uint32_t line_bytes_, line_shift_;  // a line has 1 << line_shift_ bytes
   const uint16_t core_;
   const bool allocate_on_miss_;
   const PartitionMap map_;

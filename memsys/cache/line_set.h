@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -16,11 +17,11 @@ namespace glint::mem {
 // its caches.
 class LineSet {
  public:
-  explicit LineSet(uint32_t line_bytes) : line_bytes_(line_bytes) {}
+  explicit LineSet(uint32_t line_bytes) : line_shift_(uint32_t(std::countr_zero(line_bytes))) {}
 
   // Inserts the line at `line` if it is absent. Returns whether it was absent.
   bool insert_if_new(Address line) {
-    const Address number = line / line_bytes_;
+    const Address number = line >> line_shift_;
     uint64_t& word = page_of(number)[number / 64 % kWords];
     const uint64_t bit = uint64_t{1} << number % 64;
     const bool is_new = !(word & bit);
@@ -41,7 +42,7 @@ class LineSet {
     return *pages_[index];
   }
 
-  const uint32_t line_bytes_;
+  const uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
   std::vector<std::unique_ptr<Page>> pages_;
 };
 

@@ -3,6 +3,7 @@
 #include "memsys/cache/tag_array.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/registry.h"
 
@@ -16,6 +17,7 @@ CacheShape cache_shape(uint64_t bytes, uint32_t ways, uint32_t line_bytes) {
 
 TagArray::TagArray(const CacheShape& shape, const PolicyChoice<Replacement>& replacement)
     : shape_(shape),
+      line_shift_(uint32_t(std::countr_zero(shape.line_bytes))),
       lines_(size_t{shape.sets} * shape.ways),
       has_index_(shape.ways > kMaxWaysSearched),
       index_(has_index_ ? lines_.size() : 0),

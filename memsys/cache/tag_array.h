@@ -79,8 +79,8 @@ class TagArray {
   // hashes are not published.
   uint32_t set_of(Address address) const {
     if (shape_.sets == 1) return 0;
-    const uint64_t hash = (address / shape_.line_bytes) * 0x9e37'79b9'7f4a'7c15ull;
-    return uint32_t((hash >> 32) % shape_.sets);
+    const uint64_t hash = (address >> line_shift_) * 0x9e37'79b9'7f4a'7c15ull;
+    return uint32_t(hash >> 32) % shape_.sets;
   }
 
   // Returns the slot of a line among those of its set. The loop has no branches, so that the host compares
@@ -109,6 +109,7 @@ class TagArray {
   static constexpr uint32_t kMaxWaysSearched = 32;
 
   CacheShape shape_;
+  uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
   std::vector<Line> lines_;
   const bool has_index_;  // Sets are large, so lines are found by index_. Otherwise keys_ are searched.
   LineTable index_;

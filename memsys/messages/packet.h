@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 
 #include "base/types.h"
@@ -50,9 +49,6 @@ struct Reply {
 // Address and control travel beside the data. With one 32-byte sector they make GPGPU-Sim's 40-byte flit.
 inline constexpr uint32_t kHeaderBytes = 8;
 
-constexpr uint32_t num_sectors(uint8_t mask) {
-  return uint32_t(std::popcount(mask));
-}
 constexpr bool is_atomic(const Packet& p) {
   return p.traffic == Traffic::ShaderAtomic;
 }

@@ -28,7 +28,7 @@ class SlotOrder {
   void make_newest(uint32_t slot) {
     Link& link = links_[slot];
     if (link.newer == kNone) return;
-    const uint32_t set = slot / ways_;
+    const uint32_t set = newest_.size() == 1 ? 0 : slot / ways_;
     links_[link.newer].older = link.older;
     (link.older == kNone ? oldest_[set] : links_[link.older].newer) = link.newer;
     link.newer = kNone;
