@@ -9,15 +9,11 @@
 
 namespace glint::core {
 
-void LineList::add(Address physical, uint32_t bytes, int lane) {
+void LineList::add_by_sector(Address physical, uint32_t bytes, int lane) {
   const Address end = physical + bytes;
-  // Most accesses of a lane lie in one sector.
   for (Address at = physical; at < end;) {
     const Address sector_end = std::min(end, (at | (mem::kSectorBytes - 1)) + 1);
-    LineSectors& line = at_line(at & ~mask_);
-    line.sectors |= uint8_t(1u << ((at & mask_) / mem::kSectorBytes));
-    line.words |= words_of(at & mask_, uint32_t(sector_end - at));
-    line.lanes |= LaneMask{1} << lane;
+    add_in_sector(at, uint32_t(sector_end - at), lane);
     at = sector_end;
   }
 }
@@ -34,17 +30,7 @@ void LineList::add_row(Address physical, LaneMask lanes) {
   line.lanes |= lanes;
 }
 
-// Returns the parts of a line that lie as a whole in the `bytes` bytes from `offset` on.
-mem::WordMask LineList::words_of(Address offset, uint32_t bytes) const {
-  const uint64_t begin = (offset + (uint64_t{1} << part_shift_) - 1) >> part_shift_;
-  const uint64_t end = (offset + bytes) >> part_shift_;
-  return begin < end ? mem::WordMask((uint64_t{1} << end) - (uint64_t{1} << begin)) : 0;
-}
-
-// Returns the entry of a line, and makes it when the line is new. Neighbouring lanes mostly share a line, so
-// the line that was used last is tried first.
-LineSectors& LineList::at_line(Address line) {
-  if (count_ > 0 && lines_[last_].line == line) return lines_[last_];
+LineSectors& LineList::other_line(Address line) {
   for (uint32_t i = count_; i-- > 0;)
     if (lines_[i].line == line) return lines_[last_ = i];
   GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
@@ -54,7 +40,7 @@ LineSectors& LineList::at_line(Address line) {
 
 uint32_t LineList::num_sectors() const {
   uint32_t sum = 0;
-  for (const LineSectors& line : lines()) sum += uint32_t(std::popcount(line.sectors));
+  for (const LineSectors& line : lines()) sum += mem::num_sectors(line.sectors);
   return sum;
 }
 

@@ -35,7 +35,13 @@ class LineList {
       : mask_(line_bytes - 1), part_shift_(uint32_t(std::countr_zero(line_bytes)) - 5) {}
   void clear() { count_ = last_ = 0; }
   // Adds [physical, physical + bytes), which `lane` touches.
-  void add(Address physical, uint32_t bytes, int lane);
+  void add(Address physical, uint32_t bytes, int lane) {
+    // Most accesses of a lane lie in one sector.
+    if (physical % mem::kSectorBytes + bytes <= mem::kSectorBytes) [[likely]]
+      add_in_sector(physical, bytes, lane);
+    else
+      add_by_sector(physical, bytes, lane);
+  }
   // Adds the 4-byte words of a row of kRowBytes, of which each lane touches the one with its number.
   void add_row(Address physical, LaneMask lanes);
   std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
@@ -44,8 +50,26 @@ class LineList {
   Address offset(Address physical) const { return physical & mask_; }  // offset in its line
 
  private:
-  LineSectors& at_line(Address line);
-  mem::WordMask words_of(Address offset, uint32_t bytes) const;
+  void add_in_sector(Address physical, uint32_t bytes, int lane) {
+    const Address offset = physical & mask_;
+    LineSectors& line = at_line(physical - offset);
+    line.sectors |= uint8_t(1u << offset / mem::kSectorBytes);
+    line.words |= words_of(offset, bytes);
+    line.lanes |= LaneMask{1} << lane;
+  }
+  void add_by_sector(Address physical, uint32_t bytes, int lane);
+  // Returns the entry of a line, and makes it when the line is new. Neighbouring lanes mostly share a line,
+  // so the line that was used last is tried first.
+  LineSectors& at_line(Address line) {
+    return count_ > 0 && lines_[last_].line == line ? lines_[last_] : other_line(line);
+  }
+  LineSectors& other_line(Address line);
+  // Returns the parts of a line that lie as a whole in the `bytes` bytes from `offset` on.
+  mem::WordMask words_of(Address offset, uint32_t bytes) const {
+    const uint64_t begin = (offset + (uint64_t{1} << part_shift_) - 1) >> part_shift_;
+    const uint64_t end = (offset + bytes) >> part_shift_;
+    return begin < end ? mem::WordMask((uint64_t{1} << end) - (uint64_t{1} << begin)) : 0;
+  }
 
   Address mask_;         // line size - 1
   uint32_t part_shift_;  // shift to one of the 32 parts of a line

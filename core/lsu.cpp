@@ -15,21 +15,23 @@ Lsu::Lsu(const Params& params, mem::L1Port& l1)
       shared_(params.shared),
       lsu_unit_(params.units.lsu),
       tex_unit_(params.units.tex),
-      num_queues_(params.schedulers),
       samples_per_cycle_(params.texture.samples_per_cycle),
       own_queue_(params.texture.queue > 0),
       own_door_(params.texture.own_door),
       accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
   groups_[0].capacity = params.lsu.queue;
   groups_[1].capacity = params.texture.queue;
-  for (Pipe& pipe : pipes_) pipe.id.resize(accesses_.size());
+  for (uint32_t sectors = 0; sectors < sector_cycles_.size(); ++sectors)
+    sector_cycles_[sectors] = uint8_t((sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle);
   for (uint32_t id = uint32_t(accesses_.size()); id-- > 0;) free_.push_back(id);
   completed_.reserve(accesses_.size());
 }
 
 MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now, bool texture) {
   GLINT_DCHECK(can_take(scheduler, texture), "scheduler {} has no room for an access", scheduler);
-  Queue& queue = groups_[texture && own_queue_].queues[scheduler];
+  Group& group = groups_[texture && own_queue_];
+  Queue& queue = group.queues[scheduler];
+  group.filled |= 1u << scheduler;
   const uint32_t id = free_.back();
   free_.pop_back();
   queue.id[(queue.head + queue.count++) % kMaxQueue] = id;
@@ -42,18 +44,15 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now, bool texture) {
   access.bank_turns = 1;
   access.issued = now;
   access.late_until = 0;
-  ++num_queued_;
   due_ = std::min(due_, now + 1);
   return access;
 }
 
-void Lsu::tick(Cycle now) {
-  completed_.clear();
-  num_accepted_ = 0;
+void Lsu::run(Cycle now) {
   if (l1_.has_answer(now, mem::Client::Lsu)) take_answers(now);
   if (now < due_) return;
-  if (num_queued_ > 0)
-    for (Group& group : groups_) accept(group, now);
+  for (Group& group : groups_)
+    if (group.filled) accept(group, now);
   send(now);
   due_ = find_due(now);
 }
@@ -69,23 +68,26 @@ void Lsu::take_answers(Cycle now) {
 // Takes one access in accept_interval cycles from the schedulers' queues, which take turns.
 void Lsu::accept(Group& group, Cycle now) {
   if (now < group.accept_at || group.capacity == 0) return;
-  for (uint32_t i = 0; i < num_queues_; ++i) {
-    const uint32_t q = (group.next + i) % num_queues_;
-    Queue& queue = group.queues[q];
-    if (queue.count == 0 || now < queue.free_at) continue;
-    const uint32_t id = queue.id[queue.head];
-    Pipe& pipe = pipes_[pipe_of(accesses_[id])];
-    if (accesses_[id].issued >= now || now < pipe.free_at) continue;
-    queue.head = (queue.head + 1) % kMaxQueue;
-    --queue.count;
-    --num_queued_;
-    ++num_vacated_;
-    queue.free_at = now + lsu_unit_.interval;
-    group.accept_at = now + params_.accept_interval;
-    group.next = (q + 1) % num_queues_;
-    enter(id, pipe, now);
-    return;
-  }
+  const uint32_t first = group.filled >> group.next << group.next;  // The turn begins with these.
+  for (const uint32_t part : {first, group.filled & ~first})
+    for (uint32_t rest = part; rest; rest &= rest - 1)
+      if (accept_from(group, uint32_t(std::countr_zero(rest)), now)) return;
+}
+
+bool Lsu::accept_from(Group& group, uint32_t q, Cycle now) {
+  Queue& queue = group.queues[q];
+  if (now < queue.free_at) return false;
+  const uint32_t id = queue.id[queue.head];
+  Pipe& pipe = pipes_[pipe_of(accesses_[id])];
+  if (accesses_[id].issued >= now || now < pipe.free_at) return false;
+  queue.head = (queue.head + 1) % kMaxQueue;
+  if (--queue.count == 0) group.filled &= ~(1u << q);
+  ++num_vacated_;
+  queue.free_at = now + lsu_unit_.interval;
+  group.accept_at = now + params_.accept_interval;
+  group.next = q + 1;
+  enter(id, pipe, now);
+  return true;
 }
 
 // Puts an access at the end of its pipe.
@@ -112,7 +114,7 @@ void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
       access.ready += latency - (access.atomic ? shared_.atomic_latency : shared_.latency);
     pipe.free_at = now + 1 + more;
   }
-  pipe.id[(pipe.head + pipe.count++) % pipe.id.size()] = id;
+  pipe.ids.push(id);
   accepted_[num_accepted_++] = id;
 }
 
@@ -137,15 +139,10 @@ Cycle Lsu::shared_latency(const MemoryAccess& access) const {
   return times.latency + std::max((access.passes - 1) * times.pass, times.hidden) - times.hidden;
 }
 
-void Lsu::pop(Pipe& pipe) {
-  pipe.head = uint32_t((pipe.head + 1) % pipe.id.size());
-  --pipe.count;
-}
-
 void Lsu::finish_shared(Cycle now) {
   Pipe& pipe = pipes_[kShared];
-  for (; pipe.count > 0 && accesses_[pipe.front()].ready <= now; pop(pipe))
-    completed_.push_back(pipe.front());
+  for (; !pipe.ids.empty() && accesses_[pipe.ids.front()].ready <= now; pipe.ids.pop())
+    completed_.push_back(pipe.ids.front());
 }
 
 // Sends lines of one access per cycle and door. The pipe that was not served last goes first.
@@ -154,7 +151,7 @@ void Lsu::send(Cycle now) {
   const uint32_t first = next_pipe_;
   for (uint32_t i = 0; i < 2; ++i) {
     const uint32_t p = (first + i) % 2;
-    if (now < door_free_[door_of(p)] || pipes_[p].count == 0 || accesses_[pipes_[p].front()].ready > now)
+    if (pipes_[p].ids.empty() || now < door_free_[door_of(p)] || accesses_[pipes_[p].ids.front()].ready > now)
       continue;
     if (send_line(now, p)) next_pipe_ = 1 - p;
   }
@@ -163,7 +160,7 @@ void Lsu::send(Cycle now) {
 bool Lsu::send_line(Cycle now, size_t p) {
   Pipe& pipe = pipes_[p];
   Cycle& door_free = door_free_[door_of(p)];
-  const uint32_t id = pipe.front();
+  const uint32_t id = pipe.ids.front();
   MemoryAccess& access = accesses_[id];
   const auto lines = access.lines.lines();
   if (access.hold > 0) {
@@ -180,13 +177,12 @@ bool Lsu::send_line(Cycle now, size_t p) {
                     {line.line, line.sectors, access.write, traffic, id, line.words, line.atomic}))
       break;
     ++access.num_sent;
-    cycles = std::max(cycles, (uint32_t(std::popcount(line.sectors)) + params_.sectors_per_cycle - 1) /
-                                  params_.sectors_per_cycle);
+    cycles = std::max<uint32_t>(cycles, sector_cycles_[mem::num_sectors(line.sectors)]);
   }
   if (cycles == 0) return false;
   door_free = now + cycles;
   if (access.num_sent == lines.size()) {
-    pop(pipe);
+    pipe.ids.pop();
     if (access.write) completed_.push_back(id);
   }
   return true;
@@ -195,14 +191,13 @@ bool Lsu::send_line(Cycle now, size_t p) {
 Cycle Lsu::find_due(Cycle now) const {
   Cycle next = kNever;
   for (size_t p = 0; p < pipes_.size(); ++p) {
+    if (pipes_[p].ids.empty()) continue;
     const Cycle door = p == kShared ? 0 : door_free_[door_of(p)];
-    if (pipes_[p].count > 0) next = std::min(next, std::max(accesses_[pipes_[p].front()].ready, door));
+    next = std::min(next, std::max(accesses_[pipes_[p].ids.front()].ready, door));
   }
-  for (uint32_t g = 0; g < groups_.size() && num_queued_ > 0; ++g)
-    for (uint32_t q = 0; q < num_queues_; ++q) {
-      const Group& group = groups_[g];
-      const Queue& queue = group.queues[q];
-      if (queue.count == 0) continue;
+  for (const Group& group : groups_)
+    for (uint32_t rest = group.filled; rest; rest &= rest - 1) {
+      const Queue& queue = group.queues[size_t(std::countr_zero(rest))];
       const MemoryAccess& access = accesses_[queue.id[queue.head]];
       next = std::min(next, std::max({queue.free_at, access.issued + 1, group.accept_at,
                                       pipes_[pipe_of(access)].free_at}));

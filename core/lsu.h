@@ -13,6 +13,7 @@
 #include "core/params.h"
 #include "isa/atomic.h"
 #include "memsys/l1_port.h"
+#include "memsys/ring.h"
 
 namespace glint::core {
 
@@ -62,7 +63,13 @@ class Lsu {
   MemoryAccess& take(uint32_t scheduler, Cycle now, bool texture = false);
   // Advances to `now`. Afterwards completed() holds the accesses that ended in this cycle, each once: reads
   // when their last line has come, and writes when the L1 has taken the last line.
-  void tick(Cycle now);
+  void tick(Cycle now) {
+    completed_.clear();
+    num_accepted_ = 0;
+    if (now >= due_ || l1_.has_answer(now, mem::Client::Lsu)) run(now);
+  }
+  // Returns whether completed() or accepted() has an access.
+  bool has_news() const { return num_accepted_ != 0 || !completed_.empty(); }
   std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }
   // Returns the accesses that have left their queues in this cycle.
   std::span<const uint32_t> accepted() const { return {accepted_.data(), num_accepted_}; }
@@ -84,18 +91,19 @@ class Lsu {
   };
   struct Group {  // queues from which one unit takes in turn
     std::array<Queue, kMaxSchedulers> queues{};
+    uint32_t filled = 0;  // bit i: queues[i] holds an access
     uint32_t capacity = 0, next = 0;
     Cycle accept_at = 0;
   };
-  struct Pipe {  // accesses in order, as a ring
-    std::vector<uint32_t> id;
-    uint32_t head = 0, count = 0;
+  struct Pipe {  // accesses in order
+    mem::Ring<uint32_t> ids;
     Cycle free_at = 0;
-    uint32_t front() const { return id[head]; }
   };
 
+  void run(Cycle now);
   void take_answers(Cycle now);
   void accept(Group& group, Cycle now);
+  bool accept_from(Group& group, uint32_t queue, Cycle now);
   void enter(uint32_t id, Pipe& pipe, Cycle now);
   void send(Cycle now);
   size_t door_of(size_t pipe) const { return own_door_ && pipe == 1; }
@@ -103,7 +111,6 @@ class Lsu {
   bool send_line(Cycle now, size_t pipe);
   void finish_shared(Cycle now);
   Cycle find_due(Cycle now) const;
-  void pop(Pipe& pipe);
   static size_t pipe_of(const MemoryAccess& access) {
     return access.lines.lines().empty() ? kShared : access.texture;
   }
@@ -118,8 +125,9 @@ class Lsu {
   const LsuParams params_;
   const SharedParams shared_;
   const UnitParams lsu_unit_, tex_unit_;
-  const uint32_t num_queues_, samples_per_cycle_;
-  const bool own_queue_, own_door_;  // the texture unit has a queue and a door of its own
+  const uint32_t samples_per_cycle_;
+  std::array<uint8_t, 9> sector_cycles_{};  // cycles of a door for so many sectors of a line
+  const bool own_queue_, own_door_;         // the texture unit has a queue and a door of its own
   std::array<Group, 2> groups_;  // the group of loads and stores, and that of textures if they have their own
   static constexpr size_t kShared = 2;
   std::array<Pipe, 3> pipes_;  // load-store, texture, shared memory
@@ -128,8 +136,7 @@ class Lsu {
   std::array<uint32_t, 2> accepted_{};
   uint32_t num_accepted_ = 0;
   uint64_t num_vacated_ = 0;
-  uint32_t num_queued_ = 0;  // accesses in the queues of both groups
-  Cycle due_ = kNever;       // first cycle with work of the unit's own, unless answers of the L1 come before
+  Cycle due_ = kNever;  // first cycle with work of the unit's own, unless answers of the L1 come before
   std::vector<MemoryAccess> accesses_;
   std::vector<uint32_t> free_, completed_;  // reserved once
 };

@@ -89,7 +89,7 @@ void MemoryAccesses::start_fence(uint32_t slot, const IssueRow& row, const exec:
   core_.warps[slot].front = {waits ? kNever : now + latency, Stall::Fence};
 }
 
-void MemoryAccesses::take_answers(Cycle now) {
+void MemoryAccesses::take_news(Cycle now) {
   if (holds_operands_)
     for (uint32_t id : lsu_.accepted()) read_operands(id, now);
   for (uint32_t id : lsu_.completed()) complete(id, now);

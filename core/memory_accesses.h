@@ -32,7 +32,9 @@ class MemoryAccesses {
   // until the other cores see what came before it, however short its latency.
   void start_fence(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
   // Takes the accesses that the load-store unit has read or completed in this cycle, after the unit's tick.
-  void take_answers(Cycle now);
+  void take_answers(Cycle now) {
+    if (lsu_.has_news()) take_news(now);
+  }
 
   // Returns the accesses of the slot's warp between issue and completion.
   uint32_t in_flight(uint32_t slot) const { return pending_[slot].accesses; }
@@ -47,6 +49,7 @@ class MemoryAccesses {
     bool has_stored = false;  // The warp has stored to global memory since its last fence among cores.
   };
   void count(const isa::OpRow& op);
+  void take_news(Cycle now);
   void read_operands(uint32_t access_id, Cycle now);
   void complete(uint32_t access_id, Cycle now);
   void deliver(const MemoryAccess& access, const IssueRow& row, Cycle now);

@@ -29,10 +29,6 @@ void RayDoor::start(uint32_t slot, const IssueRow& row, const exec::Issued& issu
   core_.counts.end(issued.pc, row.latency);
 }
 
-void RayDoor::take_answers(Cycle now) {
-  while (const auto slot = rt_.pop_completion(now)) complete(*slot, now);
-}
-
 void RayDoor::complete(uint32_t slot, Cycle now) {
   WarpSlot& at = core_.warps[slot];
   const Trip& trip = trips_[slot];

@@ -17,7 +17,9 @@ class RayDoor {
   // of its rays has to travel.
   void start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
   // Lets warps go on whose rays have all stopped by `now`.
-  void take_answers(Cycle now);
+  void take_answers(Cycle now) {
+    while (const auto slot = rt_.pop_completion(now)) complete(*slot, now);
+  }
   // Returns the instruction that handed over the slot's rays last.
   uint32_t traced_at(uint32_t slot) const { return trips_[slot].pc; }
 
