@@ -170,6 +170,13 @@ bool may_stand_first(spv::Op op) {
   return op == spv::Op::OpPhi || op == spv::Op::OpVariable;
 }
 
+// Returns true for debug information about the instructions that follow it.
+bool is_mark(uint32_t debug_op) {
+  return debug_op == NonSemanticShaderDebugInfo100DebugScope ||
+         debug_op == NonSemanticShaderDebugInfo100DebugNoScope ||
+         debug_op == NonSemanticShaderDebugInfo100DebugLine;
+}
+
 }  // namespace
 
 std::optional<Words> with_inline_scopes(const Words& words) {
@@ -211,16 +218,22 @@ std::optional<Words> with_inline_scopes(const Words& words) {
   return out;
 }
 
-Words without_stray_lines(const Words& words) {
+Words with_marks_in_place(const Words& words) {
   Words out(words.begin(), words.begin() + kHeaderWords);
   std::set<uint32_t> sets;
+  size_t marks = out.size();  // where the marks begin that the last instruction has before it
   for (size_t i = kHeaderWords; i < words.size(); i += words[i] >> 16) {
     const std::span<const uint32_t> inst(&words[i], words[i] >> 16);
-    if (op_of(inst[0]) == spv::Op::OpExtInstImport && text_at(inst.subspan(2)) == kDebugInfoSet)
-      sets.insert(inst[1]);
-    const bool is_stray = op_of(inst[0]) == spv::Op::OpExtInst && sets.count(inst[3]) &&
-                          inst[4] == NonSemanticShaderDebugInfo100DebugNoLine;
-    if (!is_stray) out.insert(out.end(), inst.begin(), inst.end());
+    const spv::Op op = op_of(inst[0]);
+    if (op == spv::Op::OpExtInstImport && text_at(inst.subspan(2)) == kDebugInfoSet) sets.insert(inst[1]);
+    const bool is_debug = op == spv::Op::OpExtInst && sets.count(inst[3]);
+    if (is_debug && inst[4] == NonSemanticShaderDebugInfo100DebugNoLine) continue;
+    const size_t at = op == spv::Op::OpVariable ? marks : out.size();
+    out.insert(out.begin() + long(at), inst.begin(), inst.end());
+    if (op == spv::Op::OpVariable)
+      marks += inst.size();
+    else if (!is_debug || !is_mark(inst[4]))
+      marks = out.size();
   }
   return out;
 }

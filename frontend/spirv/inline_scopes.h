@@ -13,9 +13,10 @@ namespace glint::frontend {
 // marked: those below version 1.6, without lines, or with instructions of another non-semantic set.
 std::optional<std::vector<uint32_t>> with_inline_scopes(const std::vector<uint32_t>& words);
 
-// Returns a marked and then optimised module without the DebugNoLine that the optimiser writes in places
-// where it is not allowed.
-std::vector<uint32_t> without_stray_lines(const std::vector<uint32_t>& words);
+// Repairs a marked and then optimised module: marks of a function's variables stand behind the variables,
+// before which nothing may stand, and the DebugNoLine is gone that the optimiser writes where it is not
+// allowed.
+std::vector<uint32_t> with_marks_in_place(const std::vector<uint32_t>& words);
 
 // Returns the module with an OpLine for each DebugLine and without other debug information of that set. A
 // module without such debug information is returned unchanged.

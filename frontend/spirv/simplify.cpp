@@ -192,7 +192,7 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
                                          Report* report) {
   std::vector<uint32_t> output = after_passes(spirv, passes, is_large, report);
   if (output.empty()) return {};
-  output = without_stray_lines(with_debug_prints(without_marks(output)));
+  output = with_marks_in_place(with_debug_prints(without_marks(output)));
   const std::string after = timed_validation(output, "after", report->times);
   report->messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};

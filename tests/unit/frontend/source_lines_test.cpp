@@ -98,6 +98,32 @@ TEST_CASE("after inlining every instruction says under which calls it stands, a 
     if (line.line >= 11) CHECK(stack_of(program, line) == fmt::format("main:{}", line.line));
 }
 
+TEST_CASE("functions with local arrays keep their marks when they are inlined") {
+  const std::string text = R"(#version 460
+layout(local_size_x = 32) in;
+layout(set = 0, binding = 0) buffer B { float v[]; };
+float pick(vec2 r, int k) {
+  float parts[2] = float[](r.x, r.y);
+  return parts[k];
+}
+float twice(vec2 r, int k) {
+  float both[3] = float[](r.x, pick(r, k), 1.0);
+  return both[k + 1];
+}
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  v[i] = twice(vec2(v[i], v[i + 32]), int(i) & 1);
+}
+)";
+  const isa::Program program = compiled(words_of(text));
+  std::set<std::string> stacks;
+  for (size_t i = 0; i < program.code.size(); ++i)
+    if (isa::to_text(program, program.code[i]).find(".local.") != std::string::npos)
+      stacks.insert(stack_of(program, program.lines[i]));
+  CHECK(stacks == std::set<std::string>{"main:14 twice:9 pick:5", "main:14 twice:9 pick:6", "main:14 twice:9",
+                                        "main:14 twice:10"});
+}
+
 TEST_CASE("marks of functions change no instruction, no constant and no line") {
   std::vector<std::string> sources{"path_tracing/raygen.rgen", "path_tracing/triangle.rchit",
                                    "ambient_occlusion/raygen.rgen"};
