@@ -146,9 +146,13 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
   const Shader& shader = script.shaders.at(attachment.shader);
   std::vector<uint32_t> words = spirv_of(shader, *attachment.stage, cache);
   const std::string title = shader.name;
-  const std::string invalid = words.size() < 5 ? "too short to hold a header" : why_invalid(words);
+  const std::string invalid = shader.language == Language::Glsl ? ""  // It was validated where it was made.
+                              : words.size() < 5                ? "too short to hold a header"
+                                                                : why_invalid(words);
   if (!invalid.empty())
     throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
+  const auto validity = attachment.constants.empty() && !attachment.is_clamped ? frontend::Validity::Known
+                                                                               : frontend::Validity::Unknown;
   words = frontend::specialize(std::move(words), attachment.constants);
   if (attachment.is_clamped) words = frontend::with_clamped_indices(words, title);
   CompiledShader out;
@@ -158,7 +162,7 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
   out.program = frontend::compile_module(words, title, attachment.entry,
                                          {compiler.max_registers, compiler.schedule, compiler.contract,
                                           compiler.queries_call, compiler.guard_latency},
-                                         notes, cache)
+                                         notes, cache, validity)
                     .program;
   if (out.program.stage != *attachment.stage)
     throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' has another stage",

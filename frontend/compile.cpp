@@ -55,13 +55,13 @@ std::optional<isa::Stage> stage_of_file(const std::string& path) {
 
 CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name,
                               const std::string& entry_point, const BackendOptions& options,
-                              Diagnostics& warnings, ShaderCache* cache) {
+                              Diagnostics& warnings, ShaderCache* cache, Validity validity) {
   const std::string key = cache ? key_of(spirv, name, entry_point, options) : std::string();
   if (cache)
     if (std::optional<CompiledModule> found = find_program(*cache, key)) return std::move(*found);
   CompiledModule out;
   const size_t warnings_before = warnings.messages().size();
-  out.simplified = simplify(spirv, name, warnings);
+  out.simplified = simplify(spirv, name, warnings, validity);
   out.program = lower(out.simplified, name, options, entry_point);
   // A module with warnings is not stored, so that its next compilation gives the same warnings.
   if (cache && warnings.messages().size() == warnings_before) {
@@ -78,9 +78,14 @@ std::vector<uint32_t> spirv_of_file(const std::string& path, const GlslOptions& 
   return glsl.specialization.empty() ? spirv : specialize(std::move(spirv), glsl.specialization);
 }
 
+Validity validity_of_file(const GlslOptions& glsl) {
+  return glsl.specialization.empty() ? Validity::Known : Validity::Unknown;
+}
+
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings) {
-  return compile_module(spirv_of_file(path, glsl), path, glsl.entry_point, options, warnings, glsl.cache)
+  return compile_module(spirv_of_file(path, glsl), path, glsl.entry_point, options, warnings, glsl.cache,
+                        validity_of_file(glsl))
       .program;
 }
 
@@ -93,7 +98,8 @@ PassTimes time_compilation(const std::string& path, const GlslOptions& glsl, con
     const PassTimer timer(&times, is_spirv_file(path) ? "reading" : "glslang", "");
     return spirv_of_file(path, anew);
   }();
-  lower(simplify(spirv, path, warnings, &times), path, options, glsl.entry_point, &times);
+  lower(simplify(spirv, path, warnings, validity_of_file(glsl), &times), path, options, glsl.entry_point,
+        &times);
   return times;
 }
 

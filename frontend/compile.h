@@ -51,9 +51,14 @@ std::vector<uint32_t> glsl_text_to_spirv(const std::string& text, const std::str
 std::vector<uint32_t> read_spirv(const std::string& path);
 bool is_spirv_file(const std::string& path);
 
-// Runs the pass list R1 of spirv/simplify.cpp (inline all, scalarise, SSA), with validation before and after.
-// When the optimiser fails, `warnings` gets its messages and the module is returned unchanged.
-std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings);
+// Says whether a module is known to be valid, because it is as glsl_to_spirv() or read_spirv() returned it.
+enum class Validity : uint8_t { Unknown, Known };
+
+// Runs the pass list R1 of spirv/simplify.cpp (inline all, scalarise, SSA), with validation after it, and
+// before it unless the module is known to be valid. When the optimiser fails, `warnings` gets its messages
+// and the module is returned unchanged.
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
+                               Validity validity = Validity::Unknown);
 
 // Returns SPIR-V text, for `glint compile --emit spirv`.
 std::string disassemble_spirv(const std::vector<uint32_t>& words);
@@ -70,11 +75,13 @@ struct CompiledModule {
 };
 CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name,
                               const std::string& entry_point, const BackendOptions& options,
-                              Diagnostics& warnings, ShaderCache* cache);
+                              Diagnostics& warnings, ShaderCache* cache,
+                              Validity validity = Validity::Unknown);
 
 // Returns the SPIR-V of a file, with its specialisation constants set. The file's ending says whether it is
-// GLSL, .spv or .spvasm.
+// GLSL, .spv or .spvasm. The second function says whether the first one's result is known to be valid.
 std::vector<uint32_t> spirv_of_file(const std::string& path, const GlslOptions& glsl);
+Validity validity_of_file(const GlslOptions& glsl);
 // Compiles one file with all of the steps above.
 isa::Program compile_file(const std::string& path, const GlslOptions& glsl, const BackendOptions& options,
                           Diagnostics& warnings);

@@ -47,7 +47,7 @@ PassTimes time_compilation(const std::string& path, const GlslOptions& glsl, con
 
 // These functions do what their namesakes without `times` do, and add rows.
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
-                               PassTimes* times);
+                               Validity validity, PassTimes* times);
 isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, const BackendOptions& options,
                    const std::string& entry_point, PassTimes* times);
 isa::Program assemble(VirtualProgram program, const BackendOptions& options, PassTimes* times);

@@ -72,7 +72,8 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
   // The program is never contracted, so every hit has the bits that the RT unit gives it.
   const frontend::BackendOptions backend{gpu.compiler.max_registers, gpu.compiler.schedule, false, false,
                                          gpu.compiler.guard_latency};
-  programs.push_back(frontend::compile_module(spirv, name, {}, backend, warnings, cache).program);
+  programs.push_back(
+      frontend::compile_module(spirv, name, {}, backend, warnings, cache, frontend::Validity::Known).program);
 }
 
 void place_records(exec::World& world, uint32_t stack_need) {

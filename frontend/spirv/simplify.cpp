@@ -247,12 +247,16 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
 
 namespace {
 
-std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
-                                 PassTimes* times) {
-  check_limits(spirv, name);
+void check_validity(const std::vector<uint32_t>& spirv, const std::string& name, PassTimes* times) {
   const std::string before =
       spirv.size() < kHeaderWords ? "too short to hold a header\n" : timed_validation(spirv, "before", times);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
+}
+
+std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
+                                 Validity validity, PassTimes* times) {
+  check_limits(spirv, name);
+  if (validity == Validity::Unknown) check_validity(spirv, name, times);
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
   const InlinedSize size = check_inlined_size(spirv, name);
   Report report{{}, times};
@@ -271,12 +275,13 @@ std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string&
 }  // namespace
 
 std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
-                               PassTimes* times) {
-  return with_deep_stack([&] { return simplified(std::move(spirv), name, warnings, times); });
+                               Validity validity, PassTimes* times) {
+  return with_deep_stack([&] { return simplified(std::move(spirv), name, warnings, validity, times); });
 }
 
-std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings) {
-  return simplify(std::move(spirv), name, warnings, nullptr);
+std::vector<uint32_t> simplify(std::vector<uint32_t> spirv, const std::string& name, Diagnostics& warnings,
+                               Validity validity) {
+  return simplify(std::move(spirv), name, warnings, validity, nullptr);
 }
 
 }  // namespace glint::frontend

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <spirv-tools/libspirv.hpp>
@@ -108,8 +107,9 @@ std::string second_incoming(std::span<const uint32_t> words) {
   return {};
 }
 
-// Returns what is wrong with a module, or an empty text.
-std::string messages_on(const std::vector<uint32_t>& words) {
+}  // namespace
+
+std::string validate_spirv(const std::vector<uint32_t>& words) {
   if (std::string second = second_incoming(words); !second.empty()) return second;
   if (nesting_of(words) > kDeepestValidated) return missing_components(words);
   std::string messages;
@@ -129,18 +129,6 @@ std::string messages_on(const std::vector<uint32_t>& words) {
   if (tools.Validate(words.data(), words.size(), options)) return missing_components(words);
   if (messages.empty() && only_false_alarms) return {};
   return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
-}
-
-}  // namespace
-
-std::string validate_spirv(const std::vector<uint32_t>& words) {
-  // A module is validated where it is read and again where it is simplified. The second time costs nothing.
-  static std::mutex mutex;
-  static std::vector<uint32_t> last_valid;
-  if (const std::lock_guard lock(mutex); !words.empty() && words == last_valid) return {};
-  std::string messages = messages_on(words);
-  if (const std::lock_guard lock(mutex); messages.empty()) last_valid = words;
-  return messages;
 }
 
 bool is_spirv_file(const std::string& path) {

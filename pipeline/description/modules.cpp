@@ -127,14 +127,16 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
   errors.throw_if_errors();
   words = frontend::specialize(std::move(words), values);
   module.reflection = frontend::reflect(words, file.path);
+  const auto validity = !is_binary(file.path) && values.empty() ? frontend::Validity::Known  // by glslang
+                                                                : frontend::Validity::Unknown;
   frontend::CompiledModule compiled;
   if (only_reflect)
-    compiled.simplified = frontend::simplify(words, file.path, notes);
+    compiled.simplified = frontend::simplify(words, file.path, notes, validity);
   else
     compiled = frontend::compile_module(words, file.path, file.entry,
                                         {compiler.max_registers, compiler.schedule, compiler.contract,
                                          compiler.queries_call, compiler.guard_latency},
-                                        notes, file.glsl.cache);
+                                        notes, file.glsl.cache, validity);
   simplified_.push_back(frontend::reflect(compiled.simplified, file.path));
   module.reflection.local_size = simplified_.back().local_size;
   module.program = std::move(compiled.program);

@@ -40,7 +40,8 @@ std::string text_of(const CompileOptions& options, const std::string& file, cons
   if (options.emit == "isa")
     return isa::to_text(frontend::compile_file(file, glsl, options.backend, warnings));
   std::vector<uint32_t> words = frontend::spirv_of_file(file, glsl);
-  if (options.emit == "simplified") words = frontend::simplify(std::move(words), file, warnings);
+  if (options.emit == "simplified")
+    words = frontend::simplify(std::move(words), file, warnings, frontend::validity_of_file(glsl));
   if (options.emit == "spv")
     return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]};
   return frontend::disassemble_spirv(frontend::with_plain_lines(words));

@@ -1,6 +1,7 @@
 // Tests the compilation of GLSL: includes, defines, messages, debug lines, and what simplification leaves.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/diagnostics.h"
+#include "frontend/pass_times.h"
 #include "frontend/spirv/module.h"
 #include "frontend/spirv/reflection.h"
 #include "frontend/spirv/spirv.h"
@@ -213,6 +214,25 @@ TEST_CASE("SPIR-V text becomes the newest version under which it is valid") {
   CHECK_THAT(validate_spirv(
                  assemble_spirv(start + "OpDecorate %block Block\n" + place + types + beyond + body, "x")),
              Contains("component 2 of a vector of 2"));
+}
+
+TEST_CASE("a module is validated once before it is simplified, and again when its constants are set") {
+  const lab::Folder folder;
+  const std::string path = folder.write("s.comp",
+                                        "#version 460\nlayout(constant_id = 3) const int n = 2;\n"
+                                        "layout(binding = 0) buffer B { int a[]; };\n"
+                                        "void main() { a[0] = n; }\n");
+  const auto validations = [&](const GlslOptions& glsl) {
+    Diagnostics warnings;
+    std::vector<std::string> when;
+    for (const PassTime& row : time_compilation(path, glsl, {}, warnings))
+      if (row.stage == "validation") when.push_back(row.pass);
+    return when;
+  };
+  GlslOptions glsl;
+  CHECK(validations(glsl) == std::vector<std::string>{"after"});
+  glsl.specialization = {{3, 5}};
+  CHECK(validations(glsl) == std::vector<std::string>{"before", "after"});
 }
 
 TEST_CASE("words that are not a valid module are refused") {
