@@ -8,55 +8,18 @@
 #include <array>
 #include <bitset>
 #include <fmt/format.h>
-#include <limits>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "frontend/backend/interference.h"
+#include "frontend/backend/relief.h"
 #include "frontend/backend/spill.h"
+#include "frontend/backend/spill_costs.h"
 
 namespace glint::frontend {
 namespace {
 
 constexpr uint16_t kNoSlot = 0xffff;
-constexpr float kNeverSpill = std::numeric_limits<float>::infinity();
-
-// Estimates, in executed instructions, what it costs to keep a value in memory and not in a register. The
-// cost is below 0 for a value that is saved and restored around more calls than it has accesses.
-class SpillCosts {
- public:
-  SpillCosts(const VirtualProgram& program, const Liveness& liveness, const std::vector<float>& weights,
-             const std::vector<bool>& unspillable)
-      : unspillable_(unspillable), cost_(program.registers.size()) {
-    for (BlockId b = 0; b < program.blocks.size(); ++b)
-      for (const VirtualInst& inst : program.blocks[b].code) {
-        const auto count = [&](VirtualRegister r) { cost_[r] += weights[b]; };
-        for_each_def(inst, count);
-        for_each_use(inst, count);
-      }
-    // One instruction saves or restores four registers.
-    constexpr float kInstructionsASavedWord = 2.0f / 4.0f;
-    for (const CallRegion& region : find_call_regions(program, liveness))
-      region.live.for_each([&](VirtualRegister r) {
-        const float words = program.registers[r] == RegisterClass::B64 ? 2.0f : 1.0f;
-        cost_[r] -= words * kInstructionsASavedWord * weights[region.save.block];
-      });
-  }
-
-  // Adds the costs of merged registers.
-  void merge(const InterferenceGraph& graph) {
-    for (VirtualRegister r = 0; r < cost_.size(); ++r) {
-      if (!graph.has(r)) continue;
-      if (unspillable_[r]) cost_[r] = kNeverSpill;
-      if (graph.representative(r) != r) cost_[graph.representative(r)] += cost_[r];
-    }
-  }
-  float of(VirtualRegister representative) const { return cost_[representative]; }
-
- private:
-  const std::vector<bool>& unspillable_;
-  std::vector<float> cost_;
-};
 
 // Makes one attempt to colour one register file.
 class Colouring {
@@ -243,8 +206,8 @@ bool colour_file(VirtualProgram& program, RegisterFile file, uint32_t max_regist
   for (Coalescing how : {Coalescing::All, Coalescing::Safe}) {
     InterferenceGraph graph(program, liveness, ops, file, weights);
     graph.coalesce(how, max_registers, unspillable);
-    SpillCosts costs(program, liveness, weights, unspillable);
-    costs.merge(graph);
+    SpillCosts costs(program, liveness, weights);
+    costs.merge(graph, unspillable);
     Colouring colouring(graph, program.registers, costs, max_registers);
     const bool done = colouring.run();
     if (!done && how == Coalescing::All) continue;
@@ -279,9 +242,11 @@ Allocation allocate(VirtualProgram& program, uint32_t max_registers, const Ops& 
                                 isa::kMaxRegisters));
   Allocation out;
   std::vector<bool> unspillable(program.registers.size());
-  for (RegisterFile file : {RegisterFile::Predicates, RegisterFile::Registers})
+  for (RegisterFile file : {RegisterFile::Predicates, RegisterFile::Registers}) {
+    relieve(program, file, max_registers, ops, unspillable);
     while (!colour_file(program, file, max_registers, ops, unspillable, out)) {
     }
+  }
   return out;
 }
 

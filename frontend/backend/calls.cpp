@@ -97,7 +97,7 @@ namespace {
 void demote_predicates(VirtualProgram& program, const Ops& ops) {
   std::vector<float> gain(program.registers.size());  // estimated executed instructions
   const std::vector<float> weights = block_weights(program);
-  for (const CallRegion& region : find_call_regions(program, find_liveness(program)))
+  for (const CallRegion& region : find_call_regions(program))
     // A predicate that crosses a region costs a selp and a setp.
     region.live.for_each([&](VirtualRegister r) { gain[r] += 2 * weights[region.save.block]; });
   for (BlockId b = 0; b < program.blocks.size(); ++b)
@@ -120,7 +120,7 @@ void demote_predicates(VirtualProgram& program, const Ops& ops) {
 
 void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops) {
   demote_predicates(program, ops);
-  const std::vector<CallRegion> regions = find_call_regions(program, find_liveness(program));
+  const std::vector<CallRegion> regions = find_call_regions(program);
   // These instructions are inserted before each SaveLive and after each RestoreLive, by block and index.
   std::map<std::pair<BlockId, size_t>, std::vector<VirtualInst>> before, after;
   for (const CallRegion& region : regions) {
@@ -149,7 +149,7 @@ void keep_predicates_across_calls(VirtualProgram& program, const Ops& ops) {
 }
 
 void expand_calls(VirtualProgram& program, Allocation& allocation, const Ops& ops) {
-  const std::vector<CallRegion> regions = find_call_regions(program, find_liveness(program));
+  const std::vector<CallRegion> regions = find_call_regions(program);
   const std::vector<bool> enters_inside = enters_in_region(program);
   // Holds the registers that are moved at each SaveLive and RestoreLive.
   std::map<std::pair<BlockId, size_t>, std::vector<uint16_t>> moved;

@@ -24,7 +24,8 @@ uint32_t slots_for(RegisterClass self, uint32_t max_registers) {
 }
 
 InterferenceGraph::InterferenceGraph(const VirtualProgram& program, const Liveness& liveness, const Ops& ops,
-                                     RegisterFile file, const std::vector<float>& weights)
+                                     RegisterFile file, const std::vector<float>& weights,
+                                     const std::vector<bool>* only)
     : classes_(program.registers) {
   const size_t registers = program.registers.size();
   node_of_.assign(registers, kNoRegister);
@@ -34,11 +35,11 @@ InterferenceGraph::InterferenceGraph(const VirtualProgram& program, const Livene
   visited_.resize(registers);
   for (VirtualRegister r = 0; r < registers; ++r) {
     parent_[r] = r;
-    if (file_of(classes_[r]) != file) continue;
+    if (file_of(classes_[r]) != file || (only && !(*only)[r])) continue;
     node_of_[r] = uint32_t(nodes_.size());
     nodes_.push_back(r);
   }
-  matrix_.resize(nodes_.size() * (nodes_.size() + 1) / 2 / 64 + 1);
+  edges_ = PairSet(nodes_.size());
   for (BlockId b = 0; b < program.blocks.size(); ++b)
     scan_block(program, liveness.out[b], ops, b, weights[b]);
 }
@@ -53,7 +54,7 @@ void InterferenceGraph::scan_block(const VirtualProgram& program, const Register
     const bool is_copy =
         is_real(inst) && ops.is_move(inst.op) && !is_guarded(inst) && is_register(inst.operands[1]);
     add_edges(inst, walk.live(), is_copy ? inst.operands[1].reg : kNoRegister);
-    if (is_copy && has(inst.operands[0].reg))
+    if (is_copy && has(inst.operands[0].reg) && has(inst.operands[1].reg))
       moves_.push_back({inst.operands[0].reg, inst.operands[1].reg, weight});
     if (is_real(inst)) note_wishes(inst, ops, weight);
     walk.step(inst);
@@ -93,20 +94,13 @@ void InterferenceGraph::wish(VirtualRegister a, VirtualRegister b, int offset, f
   wishes_[b].push_back({a, -offset, weight});
 }
 
-size_t InterferenceGraph::bit_of(VirtualRegister a, VirtualRegister b) const {
-  const size_t i = std::max(node_of_[a], node_of_[b]), j = std::min(node_of_[a], node_of_[b]);
-  return i * (i + 1) / 2 + j;
-}
-
 bool InterferenceGraph::interfere(VirtualRegister a, VirtualRegister b) const {
-  const size_t bit = bit_of(a, b);
-  return (matrix_[bit / 64] >> (bit % 64)) & 1;
+  return edges_.contains(node_of_[a], node_of_[b]);
 }
 
 void InterferenceGraph::add_edge(VirtualRegister a, VirtualRegister b) {
   if (a == b || interfere(a, b)) return;
-  const size_t bit = bit_of(a, b);
-  matrix_[bit / 64] |= uint64_t{1} << (bit % 64);
+  edges_.insert(node_of_[a], node_of_[b]);
   neighbours_[a].push_back(b);
   neighbours_[b].push_back(a);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frontend/backend/liveness.h"
+#include "frontend/backend/pair_set.h"
 #include "frontend/backend/slots.h"
 
 namespace glint::frontend {
@@ -37,7 +38,11 @@ enum class Coalescing : uint8_t {
 class InterferenceGraph {
  public:
   InterferenceGraph(const VirtualProgram& program, const Liveness& liveness, const Ops& ops,
-                    RegisterFile file, const std::vector<float>& weights);
+                    RegisterFile file, const std::vector<float>& weights)
+      : InterferenceGraph(program, liveness, ops, file, weights, nullptr) {}
+  // Leaves out the registers that `only` does not have.
+  InterferenceGraph(const VirtualProgram& program, const Liveness& liveness, const Ops& ops,
+                    RegisterFile file, const std::vector<float>& weights, const std::vector<bool>* only);
 
   // Merges the ends of moves, the most executed moves first. A `pinned` register must not spill. It merges
   // only with another pinned register, so that no long-lived value becomes pinned.
@@ -65,12 +70,11 @@ class InterferenceGraph {
   void wish(VirtualRegister a, VirtualRegister b, int offset, float weight);
   bool safe_to_merge(VirtualRegister a, VirtualRegister b, uint32_t max_registers) const;
   void merge(VirtualRegister into, VirtualRegister gone);
-  size_t bit_of(VirtualRegister a, VirtualRegister b) const;
 
   const std::vector<RegisterClass>& classes_;
   std::vector<uint32_t> node_of_;  // dense index of each virtual register; kNoRegister: other file
   std::vector<VirtualRegister> nodes_;
-  std::vector<uint64_t> matrix_;  // lower triangle over dense indices
+  PairSet edges_;  // over dense indices
   std::vector<std::vector<VirtualRegister>> neighbours_;
   std::vector<std::vector<SlotWish>> wishes_;
   mutable std::vector<VirtualRegister> parent_;  // union-find

@@ -11,26 +11,6 @@
 
 namespace glint::frontend {
 
-bool RegisterSet::unite(const RegisterSet& other) {
-  bool grew = false;
-  for (size_t w = 0; w < words_.size(); ++w) {
-    const uint64_t all = words_[w] | other.words_[w];
-    grew |= all != words_[w];
-    words_[w] = all;
-  }
-  return grew;
-}
-
-void RegisterSet::intersect(const RegisterSet& other) {
-  for (size_t w = 0; w < words_.size(); ++w) words_[w] &= other.words_[w];
-}
-
-size_t RegisterSet::size() const {
-  size_t bits = 0;
-  for (uint64_t word : words_) bits += size_t(std::popcount(word));
-  return bits;
-}
-
 bool LiveWalk::is_conditional(VirtualRegister r) const {
   return std::any_of(conditional_.begin(), conditional_.end(),
                      [&](const Conditional& c) { return c.reg == r; });
@@ -184,6 +164,13 @@ std::vector<CallRegion> find_call_regions(const VirtualProgram& program, const L
     }
   }
   return regions;
+}
+
+std::vector<CallRegion> find_call_regions(const VirtualProgram& program) {
+  for (const VirtualBlock& block : program.blocks)
+    for (const VirtualInst& inst : block.code)
+      if (inst.kind == VirtualInst::Kind::SaveLive) return find_call_regions(program, find_liveness(program));
+  return {};
 }
 
 }  // namespace glint::frontend

@@ -6,39 +6,14 @@
 // path suffices.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <bit>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "frontend/backend/register_set.h"
 #include "frontend/virtual_program.h"
 
 namespace glint::frontend {
-
-// Holds a set of virtual registers, with one bit for each.
-class RegisterSet {
- public:
-  RegisterSet() = default;
-  explicit RegisterSet(size_t registers) : words_((registers + 63) / 64) {}
-
-  bool contains(VirtualRegister r) const { return (words_[r / 64] >> (r % 64)) & 1; }
-  void insert(VirtualRegister r) { words_[r / 64] |= uint64_t{1} << (r % 64); }
-  void erase(VirtualRegister r) { words_[r / 64] &= ~(uint64_t{1} << (r % 64)); }
-  bool unite(const RegisterSet& other);  // returns true when the set grew
-  void intersect(const RegisterSet& other);
-  size_t size() const;
-
-  // Calls visit(register) in ascending order.
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (size_t w = 0; w < words_.size(); ++w)
-      for (uint64_t bits = words_[w]; bits; bits &= bits - 1)
-        visit(VirtualRegister(w * 64 + size_t(std::countr_zero(bits))));
-  }
-
- private:
-  std::vector<uint64_t> words_;
-};
 
 struct Liveness {
   std::vector<RegisterSet> in, out;  // one set for each block
@@ -93,5 +68,7 @@ struct CallRegion {
   RegisterSet live;
 };
 std::vector<CallRegion> find_call_regions(const VirtualProgram& program, const Liveness& liveness);
+// Does the same, and finds the liveness itself if there are calls.
+std::vector<CallRegion> find_call_regions(const VirtualProgram& program);
 
 }  // namespace glint::frontend

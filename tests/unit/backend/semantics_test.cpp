@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "frontend/backend/relief.h"
 #include "frontend/compile.h"
 #include "tests/support/catch.h"
 #include "tests/unit/backend/random_program.h"
@@ -11,9 +12,18 @@
 namespace glint::frontend::test {
 namespace {
 
-void check_same(uint32_t seed, const Shape& shape, const BackendOptions& options) {
+// Returns the program after relieve(), as if it were too large for a graph.
+VirtualProgram relieved(VirtualProgram program, uint32_t max_registers) {
+  std::vector<bool> unspillable(program.registers.size());
+  for (const RegisterFile file : {RegisterFile::Predicates, RegisterFile::Registers})
+    relieve(program, file, max_registers, {}, unspillable, 0);
+  return program;
+}
+
+void check_same(uint32_t seed, const Shape& shape, const BackendOptions& options, bool is_relieved = false) {
   const VirtualProgram original = RandomProgram(seed, shape).take();
-  const isa::Program assembled = assemble(original, options);
+  const isa::Program assembled =
+      assemble(is_relieved ? relieved(original, options.max_registers) : original, options);
   ProgramRun got(assembled);
   INFO("seed " << seed << ", registers " << options.max_registers << ", schedule " << options.schedule);
   for (int lane = 0; lane < kLanes; lane += 5) {
@@ -65,6 +75,13 @@ TEST_CASE("Programs with more live predicates than the machine has keep their st
 TEST_CASE("Eight registers suffice for everything but wide traces") {
   const Shape shape{.statements = 40, .values = 16};
   for (uint32_t seed = 500; seed <= 530; ++seed) check_same(seed, shape, {.max_registers = 8});
+}
+
+TEST_CASE("Programs that are relieved of values keep their stores") {
+  for (uint32_t seed = 600; seed <= 640; ++seed) {
+    const Shape shape{.statements = 60, .values = 16, .calls = seed % 3 == 0};
+    check_same(seed, shape, {.max_registers = 8 + seed % 57, .schedule = seed % 2 == 0}, true);
+  }
 }
 
 TEST_CASE("A spilled guard keeps one name from a guarded write to the store behind it") {
