@@ -13,14 +13,14 @@ class Ring {
   explicit Ring(size_t expected = 16) : items_(std::bit_ceil(expected < 2 ? size_t{2} : expected)) {}
 
   void push(const T& item) {
-    if (size_ == items_.size()) grow();
-    items_[(head_ + size_++) & (items_.size() - 1)] = item;
+    if (size_ > mask_) grow();
+    items_[(head_ + size_++) & mask_] = item;
   }
   const T& front() const { return items_[head_]; }
   T& front() { return items_[head_]; }
-  T& back() { return items_[(head_ + size_ - 1) & (items_.size() - 1)]; }
+  T& back() { return items_[(head_ + size_ - 1) & mask_]; }
   void pop() {
-    head_ = (head_ + 1) & (items_.size() - 1);
+    head_ = (head_ + 1) & mask_;
     --size_;
   }
   bool empty() const { return size_ == 0; }
@@ -29,12 +29,14 @@ class Ring {
  private:
   void grow() {
     std::vector<T> larger(items_.size() * 2);
-    for (size_t i = 0; i < size_; ++i) larger[i] = items_[(head_ + i) & (items_.size() - 1)];
+    for (size_t i = 0; i < size_; ++i) larger[i] = items_[(head_ + i) & mask_];
     items_.swap(larger);
+    mask_ = items_.size() - 1;
     head_ = 0;
   }
 
   std::vector<T> items_;
+  size_t mask_ = items_.size() - 1;  // The number of items is a power of two.
   size_t head_ = 0, size_ = 0;
 };
 

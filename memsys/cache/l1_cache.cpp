@@ -54,45 +54,51 @@ bool L1Cache::access(Cycle now, Client client, const Request& request) {
   return true;
 }
 
-bool L1Cache::read(Cycle now, Client client, const Request& request) {
-  const uint32_t slot = tags_.find(request.line);
-  const uint8_t missing =
-      slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
-  uint8_t fetched = 0;
-  if (missing == 0) {
-    Answers& answers = answers_[size_t(client)];
-    answers.push(answers.hits, {now + params_.hit_latency, order_, request.token});
-    latencies_.add(request.traffic, params_.hit_latency);
-  } else {
-    uint32_t entry = mshr_.find(request.line);
-    if (entry == kNone && mshr_.full()) return refuse(Refusal::MshrFull);
-    if (entry != kNone && mshr_.merge_limit(entry)) return refuse(Refusal::MergeLimit);
-    fetched = entry == kNone ? missing : uint8_t(missing & ~mshr_.pending(entry));
-    if (fetched && queue_full()) return refuse(Refusal::QueueFull);
-    if (allocate_on_miss_ && !passes_l1(request.traffic)) {
-      if (slot == kNone && !tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
-      const uint32_t packets =
-          (fetched ? 1 : 0) + (slot == kNone && tags_.victim(request.line).dirty ? 1 : 0);
-      if (!queue_room(packets)) return refuse(Refusal::QueueFull);
-      hold(now, request.line, slot);
-    }
-    if (entry == kNone) {
-      entry = mshr_.allocate(request.line);
-      passing_[entry] = true;
-    }
-    passing_[entry] &= uint8_t{passes_l1(request.traffic)};
-    mshr_.expect(entry, fetched);
-    mshr_.add(entry, {now, order_, request.token, missing, client, request.traffic});
-    if (fetched) {
-      queue_packet(now + params_.miss_latency,
-                   {.line = request.line, .sectors = fetched, .traffic = request.traffic});
-      sectors_requested_ += num_sectors(fetched);
-    }
-  }
+inline void L1Cache::count_read(const Request& request, uint32_t slot, uint8_t missing, uint8_t fetched) {
   if (slot != kNone) tags_.touch(slot);
   ++order_;
   ++reads_accepted_;
   stats_.count_read(request.traffic, missing, fetched, request.line, seen_);
+}
+
+bool L1Cache::read(Cycle now, Client client, const Request& request) {
+  const uint32_t slot = tags_.find(request.line);
+  const uint8_t missing =
+      slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
+  if (missing) return miss(now, client, request, slot, missing);
+  Answers& answers = answers_[size_t(client)];
+  answers.push(answers.hits, {now + params_.hit_latency, order_, request.token});
+  latencies_.add(request.traffic, params_.hit_latency);
+  count_read(request, slot, 0, 0);
+  return true;
+}
+
+// Handles a read with `missing` sectors, which may be on their way. Its line is in `slot` or absent.
+bool L1Cache::miss(Cycle now, Client client, const Request& request, uint32_t slot, uint8_t missing) {
+  uint32_t entry = mshr_.find(request.line);
+  if (entry == kNone && mshr_.full()) return refuse(Refusal::MshrFull);
+  if (entry != kNone && mshr_.merge_limit(entry)) return refuse(Refusal::MergeLimit);
+  const uint8_t fetched = entry == kNone ? missing : uint8_t(missing & ~mshr_.pending(entry));
+  if (fetched && queue_full()) return refuse(Refusal::QueueFull);
+  if (allocate_on_miss_ && !passes_l1(request.traffic)) {
+    if (slot == kNone && !tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
+    const uint32_t packets = (fetched ? 1 : 0) + (slot == kNone && tags_.victim(request.line).dirty ? 1 : 0);
+    if (!queue_room(packets)) return refuse(Refusal::QueueFull);
+    hold(now, request.line, slot);
+  }
+  if (entry == kNone) {
+    entry = mshr_.allocate(request.line);
+    passing_[entry] = true;
+  }
+  passing_[entry] &= uint8_t{passes_l1(request.traffic)};
+  mshr_.expect(entry, fetched);
+  mshr_.add(entry, {now, order_, request.token, missing, client, request.traffic});
+  if (fetched) {
+    queue_packet(now + params_.miss_latency,
+                 {.line = request.line, .sectors = fetched, .traffic = request.traffic});
+    sectors_requested_ += num_sectors(fetched);
+  }
+  count_read(request, slot, missing, fetched);
   if (fetched) read_missed_.fire([&] { return ReadMissed{client, request}; });
   return true;
 }

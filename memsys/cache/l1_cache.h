@@ -140,6 +140,8 @@ class L1Cache final : public L1Port {
   void run(Cycle now);
   bool refuse(Refusal reason);
   bool read(Cycle now, Client client, const Request& request);
+  bool miss(Cycle now, Client client, const Request& request, uint32_t slot, uint8_t missing);
+  void count_read(const Request& request, uint32_t slot, uint8_t missing, uint8_t fetched);
   bool write_through(Cycle now, const Request& request);
   bool write_back(Cycle now, const Request& request);
   uint64_t bank_of(Address line) const {

@@ -25,9 +25,12 @@ class FanIn final : public ChannelBase {
   }
 
   bool ready(Cycle now) const { return arrival() <= now; }
-  Cycle arrival() const { return head_ < inbox_.size() ? inbox_[head_].arrival : kNever; }
+  Cycle arrival() const { return arrival_; }
   const Message& front() const { return inbox_[head_].message; }
-  void pop() { ++head_; }
+  void pop() {
+    ++head_;
+    find_arrival();
+  }
   size_t waiting() const {
     size_t n = inbox_.size() - head_;
     for (const Outbox& box : outboxes_) n += box.sent.size();
@@ -46,6 +49,7 @@ class FanIn final : public ChannelBase {
       for (const Timed& timed : box.sent) insert(timed);
       box.sent.clear();
     }
+    find_arrival();
   }
   Cycle next_arrival() const override {
     Cycle next = arrival();
@@ -69,6 +73,7 @@ class FanIn final : public ChannelBase {
     std::vector<Timed> sent;
   };
 
+  void find_arrival() { arrival_ = head_ < inbox_.size() ? inbox_[head_].arrival : kNever; }
   // Inserts a message from the back, because the messages of one window lie close together in time.
   void insert(const Timed& timed) {
     inbox_.push_back(timed);
@@ -80,6 +85,7 @@ class FanIn final : public ChannelBase {
   std::vector<Outbox> outboxes_;
   std::vector<Timed> inbox_;
   size_t head_ = 0;
+  Cycle arrival_ = kNever;  // of the first message in the inbox
 };
 
 }  // namespace glint::mem

@@ -38,18 +38,19 @@ bool SplitReads::detour(uint32_t slot, int lane) {
   RayState& ray = buffer_[slot].ray_of(lane);
   if (ray.status != RayStatus::Traversing) return false;
   const Lanes& lanes = lanes_[slot];
-  Read read{next_fetch(ray), this, descriptor_pipe_};
-  if (lanes.header >> lane & 1)
-    read = {{ray.base, sizeof(StructureHeader), NodeKind::Internal}, this, header_pipe_};
-  else if (shortcuts_.fetch_descriptors && has_descriptor(read.what.kind) && !(lanes.described >> lane & 1))
-    read.what.bytes = kDescriptorBytes;
+  Fetch what = next_fetch(ray);
+  const bool wants_header = lanes.header >> lane & 1;
+  if (wants_header)
+    what = {ray.base, sizeof(StructureHeader), NodeKind::Internal};
+  else if (shortcuts_.fetch_descriptors && has_descriptor(what.kind) && !(lanes.described >> lane & 1))
+    what.bytes = kDescriptorBytes;
   else
     return false;
-  if (!memory_.find(read.what.address, read.what.bytes)) {
+  if (!memory_.find(what.address, what.bytes)) {
     break_off(ray);
     return false;
   }
-  buffer_.want(slot, lane, read);
+  buffer_.want(slot, lane, what, wants_header ? header_pipe_ : descriptor_pipe_, this);
   return true;
 }
 

@@ -36,10 +36,6 @@ FetchQueue::FetchQueue(const Params& params, const mem::AddressSpace& memory, me
   for (size_t i = reads_.size(); i-- > 0;) free_.push_back(uint32_t(i));
 }
 
-Cycle FetchQueue::next_event(Cycle now) const {
-  return has_request(now) || (!is_full() && has_reads_waiting()) ? now + 1 : kNever;
-}
-
 // The policy picks the warp. Model: among its lanes that want a read, the one with the lowest number is
 // served first.
 bool FetchQueue::choose(Cycle now) {
@@ -49,7 +45,7 @@ bool FetchQueue::choose(Cycle now) {
               "scheduler '{}' picked slot {}, which is not ready", scheduler_name_, picked);
   const BufferSlot& slot = buffer_[picked];
   const auto first = size_t(std::countr_zero(slot.wanting));
-  const Read read = slot.read[first];
+  const Read& read = slot.read[first];
   const uint64_t partners = coalescer_->partners(picked, views_);
   sending_ = add(picked, partners ? lanes_wanting(slot, read.what) : LaneMask{1} << first, read);
   prepare_request();
@@ -100,8 +96,15 @@ LaneMask FetchQueue::lanes_wanting(const BufferSlot& slot, const Fetch& what) {
 uint32_t FetchQueue::add(uint32_t slot, LaneMask lanes, const Read& read) {
   const uint32_t index = free_.back();
   free_.pop_back();
-  reads_[index] = {slot, lanes, read};
+  ReadInFlight& made = reads_[index];
+  made.slot = slot;
+  made.lanes = lanes;
+  made.read.set(read.what, read.pipe, read.errand);
+  made.sent = made.unanswered = 0;
+  made.next = ReadInFlight::kNone;
   buffer_.serve(slot, lanes);
+  // The rays take their steps when the node has come.
+  for_each_lane(lanes, [&](int lane) { prefetch(buffer_[slot].ray_of(lane)); });
   return index;
 }
 

@@ -41,7 +41,9 @@ class FetchQueue final : public RequestSource {
   bool has_request(Cycle) const override { return sending_ != ReadInFlight::kNone; }
   bool send(Cycle now) override;
   bool has_reads_waiting() const override { return buffer_.has_wanting_lanes(); }
-  Cycle next_event(Cycle now) const override;
+  Cycle next_event(Cycle now) const override {
+    return has_request(now) || (!is_full() && has_reads_waiting()) ? now + 1 : kNever;
+  }
 
   // Makes an entry for a read of one request that another part of the unit sends. Returns the request's
   // token.
@@ -61,7 +63,7 @@ class FetchQueue final : public RequestSource {
       if (!reads_[*token].is_complete()) continue;
       --num_reads_;
       for (uint32_t index = *token; index != ReadInFlight::kNone;) {
-        const ReadInFlight read = reads_[index];
+        const ReadInFlight& read = reads_[index];
         free_.push_back(index);
         index = read.next;
         deliver(reads_[*token].read, read.slot, read.lanes);

@@ -50,7 +50,7 @@ void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
       // The node is tested many cycles from now.
       __builtin_prefetch(bytes);
       __builtin_prefetch(bytes + node.bytes - 1);
-      return buffer_.want(slot, lane, {node, nullptr, pipe_of(node.kind)});
+      return buffer_.want(slot, lane, node, pipe_of(node.kind));
     }
     break_off(ray);
   }

@@ -30,6 +30,15 @@ struct Read {
   Fetch what;
   WalkHook* errand = nullptr;  // hook that asked for it; null: it is the ray's next node
   Pipe pipe = kBoxPipe;
+
+  // Sets each part by itself: a copy of the whole would make the host wait for the stores of its parts.
+  void set(const Fetch& fetch, Pipe in_pipe, WalkHook* for_hook) {
+    what.address = fetch.address;
+    what.bytes = fetch.bytes;
+    what.kind = fetch.kind;
+    errand = for_hook;
+    pipe = in_pipe;
+  }
 };
 
 }  // namespace glint::rt

@@ -61,7 +61,7 @@ bool StackMover::detour(uint32_t slot, int lane) {
   if (work.replayed == work.replays) return false;
   if (work.replayed == 0) ++stats_.restarts;
   const Fetch& node = buffer_[slot].ray_of(lane).path->node[work.replayed++];
-  buffer_.want(slot, lane, {node, this, pipe_of(node.kind)});
+  buffer_.want(slot, lane, node, pipe_of(node.kind), this);
   return true;
 }
 

@@ -68,13 +68,4 @@ void TestPipelines::start_tests(Cycle now, uint32_t index) {
   if (pipe.waiting.empty()) with_waiting_ &= ~(1u << index);
 }
 
-Cycle TestPipelines::next_event() const {
-  Cycle next = next_end_;
-  for (uint32_t rest = with_waiting_; rest; rest &= rest - 1) {
-    const Pipeline& pipe = pipes_[size_t(std::countr_zero(rest))];
-    next = std::min(next, pipe.interval_start + pipe.params.interval);
-  }
-  return next;
-}
-
 }  // namespace glint::rt

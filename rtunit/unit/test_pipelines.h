@@ -1,6 +1,7 @@
 // Tests boxes, triangles and instances in pipelines that have a rate and a latency.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +29,14 @@ class TestPipelines {
     for (uint32_t rest = with_waiting_; rest; rest &= rest - 1)
       start_tests(now, uint32_t(std::countr_zero(rest)));
   }
-  Cycle next_event() const;
+  Cycle next_event() const {
+    Cycle next = next_end_;
+    for (uint32_t rest = with_waiting_; rest; rest &= rest - 1) {
+      const Pipeline& pipe = pipes_[size_t(std::countr_zero(rest))];
+      next = std::min(next, pipe.interval_start + pipe.params.interval);
+    }
+    return next;
+  }
 
   bool is_any_waiting() const { return with_waiting_ != 0; }
   bool is_any_running() const { return next_end_ != kNever; }

@@ -37,15 +37,6 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
   return slot;
 }
 
-void WarpBuffer::want(uint32_t slot, int lane, const Read& read) {
-  BufferSlot& at = slots_[slot];
-  at.read[size_t(lane)] = read;
-  at.low_address[size_t(lane)] = uint32_t(read.what.address);
-  at.wanting |= LaneMask{1} << lane;
-  wanting_ |= uint64_t{1} << slot;
-  note_change(slot);
-}
-
 void WarpBuffer::stop(uint32_t slot, int lane, Cycle now) {
   --num_rays_;
   slots_[slot].stopped |= LaneMask{1} << lane;

@@ -69,7 +69,14 @@ class WarpBuffer {
   const BufferSlot& operator[](uint32_t slot) const { return slots_[slot]; }
   uint32_t size() const { return uint32_t(slots_.size()); }
 
-  void want(uint32_t slot, int lane, const Read& read);
+  void want(uint32_t slot, int lane, const Fetch& what, Pipe pipe, WalkHook* errand = nullptr) {
+    BufferSlot& at = slots_[slot];
+    at.read[size_t(lane)].set(what, pipe, errand);
+    at.low_address[size_t(lane)] = uint32_t(what.address);
+    at.wanting |= LaneMask{1} << lane;
+    wanting_ |= uint64_t{1} << slot;
+    note_change(slot);
+  }
   // Notes that the lanes' reads are under way.
   void serve(uint32_t slot, LaneMask lanes) {
     slots_[slot].wanting &= ~lanes;
