@@ -100,6 +100,8 @@ class Executor {
 
   // Reaches global memory through `view` from now on. Without a view, effects on it happen at once.
   void use(MemoryView* view) { seen_.use(view); }
+  // Reaches global memory as a block does that runs before its turn.
+  void use(BlockMemory* block) { seen_.use(block); }
   // Returns whether the last load or atomic writes its registers only when the view is committed.
   bool is_late() const { return seen_.is_late(); }
   // Returns a number that grows with every store outside of a view, and with every atomic outside of a view

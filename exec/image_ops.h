@@ -13,7 +13,7 @@ class ImageOps {
   ImageOps(const World& world, FaultGate& faults, SeenMemory& seen)
       : seen_(seen),
         images_(world, faults),
-        textures_(world, faults, images_, texels_),
+        textures_(world, faults, seen, images_, texels_),
         surfaces_(world, faults, seen, images_, texels_) {}
 
   // Returns false after a fault.

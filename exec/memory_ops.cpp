@@ -142,6 +142,11 @@ bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, La
     }
     at[size_t(lane)] = place;
   }
+  if (space == Space::Global && seen_.is_apart()) [[unlikely]]
+    for_each_lane(lanes, [&](int lane) {
+      at[size_t(lane)] =
+          seen_.place(warp.regs.access.address[size_t(lane)], at[size_t(lane)], bytes, row.effect);
+    });
   lanes_in_[size_t(space)] = lanes;
   return true;
 }
@@ -183,8 +188,10 @@ void MemoryOps::move_beginnings(WarpContext& warp, const isa::Inst& inst, const 
     if (address % (row.memory.bytes * row.memory.count)) return;
     isa::Memory shape = row.memory;
     while (--shape.count > 0) {
-      at[size_t(lane)] = world_.memory->find(address, uint64_t{shape.bytes} * shape.count);
-      if (!at[size_t(lane)]) continue;
+      const uint32_t bytes = shape.bytes * shape.count;
+      std::byte* const place = world_.memory->find(address, bytes);
+      if (!place) continue;
+      at[size_t(lane)] = seen_.place(address, place, bytes, row.effect);
       return move_rows(warp, inst, row.effect, shape, Space::Global, LaneMask{1} << lane, at);
     }
   });

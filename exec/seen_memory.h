@@ -1,18 +1,35 @@
-// Reaches global memory for the executor of one of several cores, through the core's view.
+// Reaches global memory for an executor: at once, through the view of one of several cores, or through the
+// copies of a block that runs before its turn.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
+#include <cstdint>
+
 #include "exec/access_rows.h"
+#include "exec/block_memory.h"
 #include "exec/memory_view.h"
 
 namespace glint::exec {
 
-// Reaches global memory. Without a view, effects on it happen at once, and only is_used() and is_late() may
-// be called.
+// Reaches global memory. Without a view, effects on it happen at once, and the functions that need one may
+// not be called.
 class SeenMemory {
  public:
   void use(MemoryView* view) { view_ = view; }
   bool is_used() const { return view_ != nullptr; }
   MemoryView& view() { return *view_; }
+
+  // With `block`, which may be null, accesses go where it says.
+  void use(BlockMemory* block) { block_ = block; }
+  bool is_apart() const { return block_ != nullptr; }
+  // Returns where an access goes whose place in memory is `at`.
+  std::byte* place(Address address, std::byte* at, uint32_t bytes, isa::Effect effect) {
+    return block_ ? block_->place(address, at, bytes, effect) : at;
+  }
+  // Notes a read from the allocation of an address, which is going to be read from memory itself.
+  void read_as_it_is(Address address) {
+    if (block_) block_->read_as_it_is(address);
+  }
 
   // Notes that another access begins.
   void begin_access() { is_late_ = false; }
@@ -30,6 +47,7 @@ class SeenMemory {
 
  private:
   MemoryView* view_ = nullptr;
+  BlockMemory* block_ = nullptr;
   bool is_late_ = false;
 };
 

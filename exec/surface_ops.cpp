@@ -88,7 +88,7 @@ std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, cons
     return refuse(
         [&] { return fmt::format("image '{}' is smaller in memory than its size says", image->name); });
   texels_.add(lane, {&at, 1});
-  return memory;
+  return seen_.place(at, memory, bytes, row.effect);
 }
 
 // Returns what a load gives that goes nowhere: 0. Channels that the image's format lacks are those of every

@@ -62,6 +62,7 @@ bool TextureOps::read(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
         return false;
       continue;
     }
+    seen_.read_as_it_is(image->base);
     TexelReader reader(*image, images_.sampler_of(*image, warp.regs.access.address[size_t(lane)]),
                        *world_.memory);
     const ImageLane operands(warp.regs, inst, lane);

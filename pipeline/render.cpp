@@ -58,7 +58,7 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
     result.stats = std::make_unique<RunStats>(std::move(machine));
   } else {
     const FunctionalCounts counts =
-        run_functional(world, gpu.core.instruction_budget, watch, {}, costs.get());
+        run_functional(world, gpu.core.instruction_budget, watch, {}, costs.get(), threads);
     result.end = counts.end;
     result.progress = counts.progress;
     std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);

@@ -33,7 +33,7 @@ struct RenderJob {
   bool timing = true;
   // With true, every cycle is simulated. This is slow and serves to check the skipping.
   bool no_skip = false;
-  uint32_t threads = 1;                       // threads of the host for the timing machine (HostOptions)
+  uint32_t threads = 1;                       // threads of the host (HostOptions)
   StructureCache* structure_cache = nullptr;  // null: every structure is built
   std::string shader_dir;                     // folder with raygen.rgen, miss.rmiss, triangle.rchit and so on
   frontend::GlslOptions glsl;
@@ -94,8 +94,9 @@ struct RenderResult {
 };
 
 // Runs the launch of a world on either machine. The result has everything except pictures, structures and
-// warnings. The timing machine runs on `threads` threads of the host, and with `no_skip` it simulates every
-// cycle (HostOptions). `observe` says what else to note of a timing run. Throws as render() does.
+// warnings. The machine runs on `threads` threads of the host, and with `no_skip` the timing machine
+// simulates every cycle (HostOptions). `observe` says what else to note of a timing run. Throws as render()
+// does.
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,
                        uint32_t threads, const LaunchWatch& watch, const Observation& observe = {});
 
