@@ -307,7 +307,8 @@ class Promoter {
   uint32_t word(const ParsedInst& inst, size_t offset) const { return words_[inst.at + offset]; }
 
   void note_type(const ParsedInst& inst) {
-    if (inst.op == OpTypeInt || inst.op == OpTypeFloat || inst.op == OpTypeBool || inst.op == OpTypeVector)
+    if (inst.op == OpTypeInt || inst.op == OpTypeFloat || inst.op == OpTypeBool || inst.op == OpTypeVector ||
+        inst.op == OpTypeMatrix || inst.op == OpTypeArray || inst.op == OpTypeStruct)
       plain_types_.insert(inst.result);
     if (inst.op == OpTypePointer) pointees_[inst.result] = word(inst, 3);
   }

@@ -12,7 +12,7 @@ namespace glint::frontend {
 inline constexpr uint32_t kMostAccesses = 2000;
 
 // Returns a valid module in which the functions that access one of their variables more than `most` times
-// keep no variable of a scalar or vector type that they only load and store. A phi stands only where values
+// keep no variable of numbers that they only load and store as a whole. A phi stands only where values
 // meet. A value that nothing has stored is undefined. A module that cannot be parsed is returned unchanged.
 Words with_promoted_variables(Words spirv, uint32_t most);
 

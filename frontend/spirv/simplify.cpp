@@ -38,16 +38,17 @@ constexpr const char* kSsaRewrite = "--ssa-rewrite";
 // cannot have functions that need it, and reading them again for each part would cost time.
 constexpr uint64_t kLargeModule = 8192;
 
-// Choice: from this many instructions after inlining on, inserts into vectors and structs that nobody reads
-// stay. The pass that drops them takes more than a minute for a public path tracer of 100,000 instructions.
-// Lowering makes no instructions of them, because it knows the scalars of a value.
-constexpr const char* kDeadInserts = "--eliminate-dead-inserts";
-constexpr uint64_t kManyInserts = 32'768;
+// Choice: from this many instructions after inlining on, all variables are promoted by Glint, and passes are
+// left out that then find little. This halves the time of a public path tracer of 100,000 instructions, whose
+// program gets 3 % longer. Inserts into vectors and structs that nobody reads stay, too; to drop them takes
+// that path tracer more than a minute. Lowering makes no instructions of them, because it knows the scalars
+// of a value.
+constexpr uint64_t kVeryLargeModule = 32'768;
 
 // Some passes of -O are left out on purpose. Redundancy elimination merges loads of volatile built-ins across
 // reportIntersectionEXT, simplify-instructions contracts a*b+c to Fma, ccp folds sin and cos with the host's
 // libm, and if-conversion removes divergence that hardware has.
-const std::vector<std::string>& pass_list() {
+const std::vector<std::string>& passes_until_inlined() {
   static const std::vector<std::string> kPasses = {
       kStripForeign, "--freeze-spec-const", "--fold-spec-const-op-composite", "--wrap-opkill",
       "--eliminate-dead-branches", "--merge-return",
@@ -59,14 +60,53 @@ const std::vector<std::string>& pass_list() {
       // Two passes are left out here. Removal of dead code crashes on calls that take addresses of buffers.
       // Merging of blocks moves calls into continue constructs, where functions that end an any-hit shader
       // are not inlined.
-      "--inline-entry-points-exhaustive", "--eliminate-dead-functions", "--eliminate-dead-code-aggressive",
-      "--private-to-local", "--eliminate-local-single-block", "--eliminate-local-single-store",
-      "--eliminate-dead-code-aggressive", "--scalar-replacement=100", "--convert-local-access-chains",
-      "--eliminate-local-single-block", "--eliminate-local-single-store", "--eliminate-dead-code-aggressive",
-      kSsaRewrite, "--eliminate-dead-code-aggressive", "--vector-dce", kDeadInserts,
-      "--eliminate-dead-branches", "--cfg-cleanup", "--merge-blocks", "--eliminate-dead-code-aggressive",
-      "--eliminate-dead-const"};
+      "--inline-entry-points-exhaustive", "--eliminate-dead-functions", "--eliminate-dead-code-aggressive"};
   return kPasses;
+}
+
+const std::vector<std::string>& passes_when_inlined() {
+  static const std::vector<std::string> kPasses = {"--private-to-local",
+                                                   "--eliminate-local-single-block",
+                                                   "--eliminate-local-single-store",
+                                                   "--eliminate-dead-code-aggressive",
+                                                   "--scalar-replacement=100",
+                                                   "--convert-local-access-chains",
+                                                   "--eliminate-local-single-block",
+                                                   "--eliminate-local-single-store",
+                                                   "--eliminate-dead-code-aggressive",
+                                                   kSsaRewrite,
+                                                   "--eliminate-dead-code-aggressive",
+                                                   "--vector-dce",
+                                                   "--eliminate-dead-inserts",
+                                                   "--eliminate-dead-branches",
+                                                   "--cfg-cleanup",
+                                                   "--merge-blocks",
+                                                   "--eliminate-dead-code-aggressive",
+                                                   "--eliminate-dead-const"};
+  return kPasses;
+}
+
+// These passes are those of a very large module.
+const std::vector<std::string>& few_passes_when_inlined() {
+  static const std::vector<std::string> kPasses = {"--private-to-local",
+                                                   "--scalar-replacement=100",
+                                                   "--convert-local-access-chains",
+                                                   kSsaRewrite,
+                                                   "--eliminate-dead-code-aggressive",
+                                                   "--vector-dce",
+                                                   "--eliminate-dead-branches",
+                                                   "--cfg-cleanup",
+                                                   "--merge-blocks",
+                                                   "--eliminate-dead-const"};
+  return kPasses;
+}
+
+std::vector<std::string> pass_list(const InlinedSize& size) {
+  std::vector<std::string> out = passes_until_inlined();
+  const bool is_very_large = size.instructions > kVeryLargeModule;
+  const std::vector<std::string>& more = is_very_large ? few_passes_when_inlined() : passes_when_inlined();
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
 }
 
 // These passes only fold constants, before lengths of arrays are looked at.
@@ -164,19 +204,21 @@ std::vector<uint32_t> optimise(const std::vector<uint32_t>& input, std::span<con
 }
 
 // Returns the module after `passes`. When they fail, it returns nothing, and the report says why. In a large
-// module, what is too much for ssa-rewrite is promoted before it.
+// module, what is too much for ssa-rewrite is promoted before it, and in a very large one all that can be.
 std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                   bool is_large, Report* report) {
+                                   const InlinedSize& size, Report* report) {
+  const bool is_large = size.instructions > kLargeModule;
   std::vector<uint32_t> extensions;
   std::vector<uint32_t> output = without_extensions(spirv, &extensions);
   allow_inlining(output);
   const bool has_overlap = has_overlapping_shared_blocks(output);
   if (has_overlap) move_variables(output, spv::StorageClass::Workgroup, spv::StorageClass::CrossWorkgroup);
+  const uint32_t most_accesses = size.instructions > kVeryLargeModule ? 0 : kMostAccesses;
   for (auto first = passes.begin(); first != passes.end() && !output.empty();) {
     const auto last = is_large ? std::find(first + 1, passes.end(), kSsaRewrite) : passes.end();
     if (*first == kSsaRewrite) {
       const PassTimer timer(report->times, "promotion", "");
-      output = with_promoted_variables(std::move(output), kMostAccesses);
+      output = with_promoted_variables(std::move(output), most_accesses);
     }
     output = optimise(output, {first, last}, report);
     first = last;
@@ -188,9 +230,9 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
 
 // Returns the module after `passes`, or nothing when they fail or their result is not valid.
 std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
-                                         const std::vector<std::string>& passes, bool is_large,
+                                         const std::vector<std::string>& passes, const InlinedSize& size,
                                          Report* report) {
-  std::vector<uint32_t> output = after_passes(spirv, passes, is_large, report);
+  std::vector<uint32_t> output = after_passes(spirv, passes, size, report);
   if (output.empty()) return {};
   output = with_marks_in_place(with_debug_prints(without_marks(output)));
   const std::string after = timed_validation(output, "after", report->times);
@@ -204,10 +246,8 @@ constexpr uint64_t kMostMarkedCalls = 2000;
 
 // Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
 // names its calls.
-std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, std::vector<std::string> passes,
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
                                 const InlinedSize& size, Report* report) {
-  const bool is_large = size.instructions > kLargeModule;
-  if (size.instructions > kManyInserts) std::erase(passes, kDeadInserts);
   // A block with few calls can become one with many, when the callees have calls in their turn.
   const uint32_t calls_of_block = size.calls <= kMostMarkedCalls ? 64 : 1;
   const std::vector<uint32_t> input =
@@ -219,10 +259,10 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, std::vector<
     // because it has no other such sets.
     Report of_marks{{}, report->times};
     std::vector<uint32_t> output =
-        valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, is_large, &of_marks);
+        valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, size, &of_marks);
     if (!output.empty()) return output;
   }
-  return valid_after_passes(input, passes, is_large, report);
+  return valid_after_passes(input, passes, size, report);
 }
 
 // Changes array lengths from 0 to 1 when they are 0 because nobody set a specialisation constant.
@@ -231,7 +271,7 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
   if (!has_specialised_lengths(spirv)) return spirv;
   Report report;
   std::vector<std::string> names;
-  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), false, &report);
+  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), {}, &report);
   if (folded.empty()) return spirv;
   std::vector<uint32_t> output = with_positive_lengths(folded, &names);
   if (output.size() == folded.size()) return spirv;
@@ -260,11 +300,11 @@ std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string&
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
   const InlinedSize size = check_inlined_size(spirv, name);
   Report report{{}, times};
-  for (const auto* passes : {&pass_list(), &inlining_only()}) {
-    std::vector<uint32_t> output = optimised(spirv, *passes, size, &report);
+  for (const std::vector<std::string>& passes : {pass_list(size), inlining_only()}) {
+    std::vector<uint32_t> output = optimised(spirv, passes, size, &report);
     if (output.empty()) continue;
     if (!has_calls(output)) return output;
-    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), *passes, size, &report);
+    const std::vector<uint32_t> again = optimised(with_ends_that_return(spirv), passes, size, &report);
     return again.empty() || has_calls(again) ? output : again;
   }
   warnings.warning({name, 0, 0},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <utility>
 
 #include "frontend/spirv/spirv.h"
 #include "tests/support/catch.h"
@@ -154,6 +155,38 @@ OpFunctionEnd
   CHECK(count_ops(promoted, spv::Op::OpUndef) == 1);
   CHECK(count_ops(promoted, spv::Op::OpName) == 0);
   CHECK(count_ops(promoted, spv::Op::OpDecorate) == count_ops(words, spv::Op::OpDecorate) - 2);
+}
+
+TEST_CASE("matrices, structs and arrays that are stored as a whole are promoted in a very large shader") {
+  const std::string globals =
+      "struct Pair { uint a; uvec2 b; };\n"
+      "Pair turned(Pair p, uint k) { Pair q = p; if ((p.a & 1u) != 0u) q = Pair(p.b.y + k, p.b); return q; "
+      "}\n"
+      "mat2 stepped(mat2 m, bool b) { mat2 n = m; if (b) n = mat2(m[1], m[0] + vec2(1.0)); return n; }\n";
+  constexpr uint32_t kSteps = 700;
+  const std::string code =
+      "Pair p = Pair(x, uvec2(x * 3u, 5u));\nmat2 m = mat2(0.0);\n" +
+      repeated(kSteps,
+               [](const std::string& k) {
+                 return "p = turned(p, " + k + "u); m = stepped(m, (x & " + k + "u) == 0u); p.b.x += p.a;\n";
+               }) +
+      "y = p.a + p.b.x + uint(m[0].x + 2.0 * m[1].y);";
+  const auto got = lab::run(kWords, code, globals);
+  for (size_t lane = 0; lane < kWords.size(); ++lane) {
+    const uint32_t x = kWords[lane];
+    uint32_t a = x, b = x * 3, c = 5;
+    float m[4] = {0, 0, 0, 0};
+    for (uint32_t k = 0; k < kSteps; ++k) {
+      if (a & 1) a = c + k;
+      if ((x & k) == 0) {
+        std::swap(m[0], m[2]), std::swap(m[1], m[3]);
+        m[2] += 1, m[3] += 1;
+      }
+      b += a;
+    }
+    CAPTURE(x);
+    CHECK(got[lane] == a + b + uint32_t(m[0] + 2 * m[3]));
+  }
 }
 
 }  // namespace
