@@ -74,8 +74,7 @@ bool CoreCell::has_room() const {
 
 void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   GLINT_CHECK(has_room(), "no room for a block");
-  become_empty();
-  account_until(now);
+  active_until_ = std::max(active_until_, now);
   if (counts_.stats.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
   block_start_ = ready;
   const uint32_t num_warps = executor_.warps_per_block();
@@ -83,6 +82,7 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   executor_.start(home.block, block_index);
   ++counts_.stats.blocks;
   for (uint32_t w = 0; w < num_warps; ++w) launch_warp(home, w, ready, now);
+  count_residents(now);
 }
 
 void CoreCell::launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now) {
@@ -101,8 +101,8 @@ void CoreCell::launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready,
 void CoreCell::advance(Cycle from, Cycle until) {
   Cycle now = no_skip_ ? from : next_event(from);
   while (now < until && !fault()) {
-    step(now);
-    now = no_skip_ ? now + 1 : next_event(now + 1);
+    step(now++);
+    if (!no_skip_ && !warps_.any_awake(now)) now = next_event(now);
   }
 }
 
@@ -119,8 +119,6 @@ Cycle CoreCell::next_event(Cycle from) const {
 
 void CoreCell::step(Cycle now) {
   sampler_.reach(now);
-  const bool had_warps = warps_.num_resident() > 0;
-  if (had_warps) account_until(now);
   l1_.tick(now);
   // Choice: the RT unit and the load-store unit alternate in who comes to the L1 first, so that neither
   // starves the other.
@@ -128,6 +126,7 @@ void CoreCell::step(Cycle now) {
   lsu_.tick(now);
   if (!(now & 1)) rt_.tick(now);
   if (code_) code_->tick(now, warps_, constants_);
+  if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);
   rays_.take_answers(now);
   for (Scheduler& scheduler : warps_.schedulers()) {
@@ -135,38 +134,37 @@ void CoreCell::step(Cycle now) {
     issue_.run(scheduler, now);
     if (fault()) break;
   }
-  // An empty core's time is accounted for when a warp comes or the run ends.
-  if (had_warps) account_until(now + 1);
+  active_until_ = now + 1;
+  if (warps_.num_resident() != residents_) [[unlikely]] {
+    count_residents(now);
+    if (residents_ == 0) become_empty(now + 1);
+  }
 }
 
-// Gives the cycles since the last call to the schedulers' reasons.
-void CoreCell::account_until(Cycle now) {
-  if (now <= accounted_) return;
-  const uint64_t cycles = now - accounted_;
-  CoreStats& stats = counts_.stats;
-  for (const Scheduler& scheduler : warps_.schedulers()) stats.stalls.add(scheduler.reason(), cycles);
-  if (counts_.profile)
-    for (const Scheduler& scheduler : warps_.schedulers())
-      counts_.profile->spend(scheduler.index(), scheduler.reason(), cycles);
-  stats.cycles += cycles;
-  stats.resident_cycles += cycles * warps_.num_resident();
-  stats.slot_cycles += cycles * params_.warps;
-  accounted_ = now;
+// Notes that the number of resident warps may be another one from cycle `now` on.
+void CoreCell::count_residents(Cycle now) {
+  counts_.stats.resident_cycles += (now - residents_since_) * residents_;
+  residents_since_ = now;
+  residents_ = warps_.num_resident();
 }
 
-// Notes that the core has no warp. Its cycles have that reason, whatever a scheduler waited for last.
-void CoreCell::become_empty() {
-  if (warps_.num_resident() > 0) return;
-  for (Scheduler& scheduler : warps_.schedulers()) scheduler.become_empty();
+// Notes that the core has no warp from cycle `now` on, which is the reason of its cycles then.
+void CoreCell::become_empty(Cycle now) {
+  for (Scheduler& scheduler : warps_.schedulers()) {
+    counts_.spend(scheduler, now);
+    scheduler.become_empty();
+  }
 }
 
 void CoreCell::finish(Cycle end) {
-  GLINT_CHECK_LE(accounted_, end);
-  become_empty();
-  account_until(end);
+  GLINT_CHECK_LE(active_until_, end);
+  CoreStats& stats = counts_.stats;
+  count_residents(end);
+  for (Scheduler& scheduler : warps_.schedulers()) counts_.spend(scheduler, end);
+  stats.cycles += end;
+  stats.slot_cycles += end * params_.warps;
   sampler_.finish(end);
   counts_.settle(table_, *world_.image);
-  CoreStats& stats = counts_.stats;
   const exec::CandidateCounts& candidates = executor_.candidates();
   for (int stage = 0; stage < kNumStages; ++stage)
     stats.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));

@@ -86,7 +86,7 @@ class CoreCell final : public Cell {
   Cycle next_event(Cycle from) const override;
   bool finished() const override {
     return warps_.num_resident() == 0 && lsu_.idle() && (!code_ || code_->idle()) &&
-           l1_.next_event(accounted_) == kNever;  // The last writes have left.
+           l1_.next_event(active_until_) == kNever;  // The last writes have left.
   }
   uint64_t progress() const override { return counts_.progress; }
   // Returns a number that grows when a warp begins, ends or is handed to the RT unit, and with what
@@ -101,7 +101,7 @@ class CoreCell final : public Cell {
   // Returns what went wrong here and was let pass.
   const exec::FaultLog& passed() const { return executor_.passed(); }
   // Returns the cycle after the last one in which anything happened here.
-  Cycle active_until() const { return accounted_; }
+  Cycle active_until() const { return active_until_; }
   // Gives the cycles up to `end` to their reasons. It is called once, at the end of the run, with `end` >=
   // active_until().
   void finish(Cycle end);
@@ -132,8 +132,8 @@ class CoreCell final : public Cell {
  private:
   void launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now);
   void step(Cycle now);
-  void account_until(Cycle now);
-  void become_empty();
+  void count_residents(Cycle now);
+  void become_empty(Cycle now);
   CoreParts parts() { return {params_, world_, table_, executor_, warps_, counts_, observers_}; }
 
   const Params params_;
@@ -155,9 +155,11 @@ class CoreCell final : public Cell {
   RayDoor rays_;
   BarrierUnit barriers_;
   IssueStage issue_;
-  exec::Seat seat_;        // the seat of the warp launched last
-  Cycle block_start_ = 0;  // when the first instructions of the block launched last can issue
-  Cycle accounted_ = 0;    // every cycle before this one has been given to a reason
+  exec::Seat seat_;         // the seat of the warp launched last
+  Cycle block_start_ = 0;   // when the first instructions of the block launched last can issue
+  uint32_t residents_ = 0;  // resident warps since cycle residents_since_
+  Cycle residents_since_ = 0;
+  Cycle active_until_ = 0;  // nothing has happened in this cycle or after it
   IntervalSampler sampler_;
 };
 

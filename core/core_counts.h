@@ -13,6 +13,7 @@
 #include "core/core_stats.h"
 #include "core/issue_table.h"
 #include "core/profile.h"
+#include "core/scheduler.h"
 #include "exec/executor.h"
 #include "memsys/latency.h"
 
@@ -43,6 +44,14 @@ class CoreCounts {
   }
   // Counts that the instruction at `pc` took `duration` cycles from its issue to its completion.
   void end(uint32_t pc, uint64_t duration) { by_pc_[pc].cycles += duration; }
+  // Gives the cycles of the scheduler up to `until` to its reason. It is called before the reason changes.
+  void spend(Scheduler& scheduler, Cycle until) {
+    const Stall reason = scheduler.reason();
+    const Cycle cycles = scheduler.take_unaccounted(until);
+    stats.stalls.add(reason, cycles);
+    if (profile) [[unlikely]]
+      profile->spend(scheduler.index(), reason, cycles);
+  }
   // Adds up what was counted by instruction. It is called once, at the end of the run.
   void settle(const IssueTable& table, const exec::Image& image);
 

@@ -130,6 +130,7 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
 }
 
 void IssueStage::run(Scheduler& scheduler, Cycle now) {
+  core_.counts.spend(scheduler, now);
   uint64_t ready = scheduler.find_ready(now, doors_);
   if (core_.params.register_file.banks) ready = leave_out_bank_conflicts(scheduler, ready, now);
   if (!ready) {

@@ -79,6 +79,12 @@ void take_time(IssueRow& row, const OpTime& time) {
   row.is_sequence = time.issues > 1;
 }
 
+Door door_of(const IssueRow& row, const TextureParams& texture) {
+  if (row.finish == Finish::Rays) return Door::RtUnit;
+  if (row.finish != Finish::Memory && row.finish != Finish::CallRecord) return Door::None;
+  return row.is_texture && texture.queue > 0 ? Door::Texture : Door::Lsu;
+}
+
 }  // namespace
 
 Pipe pipe_of(Unit unit) {
@@ -133,7 +139,6 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     row.num_defs = uint8_t(registers_.size() - first_def);
     row.finish = finish_of(op);
     row.pipe = row.finish == Finish::Memory ? Pipe::Memory : pipe_of(op.unit);
-    row.klass = op.klass;
     row.stage = image.shaders[image.shader_of[pc]].stage;
     row.wait = wait_of(op, row.finish);
     row.is_conditional = op.effect == Effect::Branch && inst.guard != isa::kNoGuard;
@@ -144,6 +149,7 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     issues_.push_back(uint8_t(time ? time->issues : 1));
     if (op.effect == Effect::Atomic) row.atomic = isa::AtomicKind(op.detail);
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
+    row.door = door_of(row, params.texture);
     rows_.push_back(row);
     if (params.register_file.banks) count_bank_reads(row, params.register_file);
   }

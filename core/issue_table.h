@@ -22,6 +22,10 @@ enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory,
 inline constexpr int kNumPipes = int(Pipe::Count);
 Pipe pipe_of(isa::Unit unit);
 
+// Names the queue in front of a shared unit that an instruction has to enter.
+enum class Door : uint8_t { None, Lsu, Texture, RtUnit, Count };
+inline constexpr int kNumDoors = int(Door::Count);
+
 using isa::Finish;  // the fixed times of an instruction are IssueRow::latency
 
 struct IssueRow {
@@ -31,7 +35,7 @@ struct IssueRow {
   uint8_t num_defs = 0;
   Pipe pipe = Pipe::Int;
   Finish finish = Finish::Fixed;
-  isa::Class klass = isa::Class::Alu;
+  Door door = Door::None;
   isa::Stage stage = isa::Stage::Compute;
   Stall wait = Stall::RawFixed;     // what a dependent instruction waits for
   bool is_conditional : 1 = false;  // a guarded branch

@@ -35,6 +35,8 @@ class OperandWheel {
   // Goes on to cycle `now`, which may not be before that of the last call.
   void advance(Cycle now) {
     const Cycle elapsed = now - now_;
+    if (elapsed == 1 && next_far_ == kNever) [[likely]]
+      return advance();
     if (elapsed == 0) return;
     uint64_t come = from_next();
     if (elapsed < kCycles) come &= (uint64_t{1} << elapsed) - 1;
@@ -59,6 +61,13 @@ class OperandWheel {
   // Returns the cycles with warps: bit i stands for the cycle i + 1 after the present one.
   uint64_t from_next() const { return std::rotr(cycles_, int((now_ + 1) % kCycles)); }
 
+  // Goes on by one cycle while no warp lies apart.
+  void advance() {
+    const auto cycle = size_t(++now_ % kCycles);
+    missing_ &= ~due_[cycle];
+    due_[cycle] = 0;
+    cycles_ &= ~(uint64_t{1} << cycle);
+  }
   void put_in(uint32_t warp) {
     const uint64_t bit = uint64_t{1} << warp;
     const Cycle at = at_[warp];

@@ -25,18 +25,8 @@ void Scheduler::remove(uint32_t warp) {
   wake();
 }
 
-uint64_t Scheduler::leave_out_busy_pipes(uint64_t ready, Cycle now) const {
-  if (now >= pipes_free_) return ready;
-  uint64_t busy = 0;
-  for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe)
-    busy |= pipe_free_[pipe] > now ? needs_pipe_[pipe] : 0;
-  return ready & ~busy;
-}
-
 uint64_t Scheduler::leave_out_full_doors(uint64_t ready, const Doors& doors) {
   const auto at = [&](Door door) { return ready & needs_door_[size_t(door)]; };
-  watches_lsu_ = watches_rt_ = false;
-  if (ready == at(Door::None)) return ready;
   uint64_t full = 0;
   if (at(Door::Lsu) && !doors.lsu.can_take(index_)) full |= at(Door::Lsu);
   if (at(Door::Texture) && !doors.lsu.can_take(index_, true)) full |= at(Door::Texture);
@@ -52,7 +42,16 @@ uint64_t Scheduler::leave_out_full_doors(uint64_t ready, const Doors& doors) {
 void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors) {
   Cycle next = operands_.next();
   Stall reason = Stall::NoWarp;
-  for (; waiting; waiting &= waiting - 1) reason = std::min(reason, wait_[size_t(std::countr_zero(waiting))]);
+  if (waiting) {
+    size_t first = size_t(Stall::RawFixed);  // the nearest of those that warps wait for
+    while (!(waits_[first] & waiting)) ++first;
+    reason = Stall(first);
+  }
+  if (!(at_pipes | at_doors)) {
+    reason_ = reason;
+    sleep_until_ = next;
+    return;
+  }
   const auto blame = [&](uint64_t warps, Stall stall) {
     if (warps) reason = std::min(reason, stall);
   };
@@ -64,15 +63,6 @@ void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doo
     if (at_pipes & needs_pipe_[pipe]) next = std::min(next, pipe_free_[pipe]);
   reason_ = reason;
   sleep_until_ = next;
-}
-
-uint64_t Scheduler::find_ready(Cycle now, const Doors& doors) {
-  operands_.advance(now);
-  const uint64_t operands = resident_ & ~operands_.missing();
-  const uint64_t piped = leave_out_busy_pipes(operands, now);
-  const uint64_t ready = leave_out_full_doors(piped, doors);
-  if (!ready || has_banks_) find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
-  return ready;
 }
 
 NextIssue Scheduler::next_of(uint32_t warp) const {

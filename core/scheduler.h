@@ -3,9 +3,11 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/check.h"
 #include "base/types.h"
@@ -18,10 +20,6 @@
 #include "rtunit/rt_port.h"
 
 namespace glint::core {
-
-// Names the queue in front of a shared unit that a warp's next instruction has to enter.
-enum class Door : uint8_t { None, Lsu, Texture, RtUnit, Count };
-inline constexpr int kNumDoors = int(Door::Count);
 
 // Says what the next instruction of a warp waits for, and where it goes.
 struct NextIssue {
@@ -74,22 +72,29 @@ class Scheduler {
   void set_next(uint32_t warp, const NextIssue& next) {
     const uint64_t bit = uint64_t{1} << warp;
     operands_.set(warp, next.ready_at);
-    wait_[warp] = next.wait;
+    set_wait(warp, next.wait);
     needs_pipe_[size_t(pipe_[warp])] &= ~bit;
     needs_pipe_[size_t(next.pipe)] |= bit;
     pipe_[warp] = next.pipe;
-    needs_door_[size_t(door_[warp])] &= ~bit;
-    needs_door_[size_t(next.door)] |= bit;
-    door_[warp] = next.door;
+    if (door_[warp] != next.door) {
+      needs_door_[size_t(door_[warp])] &= ~bit;
+      needs_door_[size_t(next.door)] |= bit;
+      door_[warp] = next.door;
+    }
     wake();
   }
   // Notes that the warp has ended and waits for its last accesses.
   void drain(uint32_t warp) {
     operands_.set(warp, kNever);
-    wait_[warp] = Stall::Drain;
+    set_wait(warp, Stall::Drain);
   }
-  // Notes that the core has no warps, which is the reason of its cycles from now on.
-  void become_empty() { reason_ = Stall::NoWarp; }
+  // Notes that the core has no warps. That is the reason of the scheduler's cycles from now on, and it
+  // sleeps.
+  void become_empty() {
+    reason_ = Stall::NoWarp;
+    sleep_until_ = kNever;
+    watches_rt_ = watches_lsu_ = false;
+  }
 
   // Returns whether find_ready() may give another result than the last time.
   bool is_awake(Cycle now, const Doors& doors) const {
@@ -98,7 +103,16 @@ class Scheduler {
   }
   // Returns the warps that can issue now, as bits. When no bit is set, reason() says why, and the scheduler
   // sleeps.
-  uint64_t find_ready(Cycle now, const Doors& doors);
+  uint64_t find_ready(Cycle now, const Doors& doors) {
+    operands_.advance(now);
+    const uint64_t operands = resident_ & ~operands_.missing();
+    const uint64_t piped = leave_out_busy_pipes(operands, now);
+    uint64_t ready = piped;
+    watches_lsu_ = watches_rt_ = false;
+    if (ready & ~needs_door_[size_t(Door::None)]) ready = leave_out_full_doors(ready, doors);
+    if (!ready || has_banks_) find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
+    return ready;
+  }
   // Holds back warps of `ready` whose register reads meet those of earlier instructions until `next`.
   void hold_for_banks(Cycle next) {
     reason_ = std::min(reason_, Stall::RegisterBanks);
@@ -122,7 +136,7 @@ class Scheduler {
     Cycle& busy = pipe_busy_[size_t(at)];
     const Cycle start = std::max(busy, now * kParts);
     busy = start + parts;
-    pipes_free_ = std::max(pipes_free_, pipe_free_[size_t(at)] = start / kParts + 1);
+    block(at, start / kParts + 1);
     return start / kParts - now;
   }
   // Sends an instruction to a pipe that is free. Intervals that are not a whole number of cycles are kept on
@@ -132,13 +146,15 @@ class Scheduler {
     constexpr Cycle kParts = OpTime::kParts;
     Cycle& busy = pipe_busy_[size_t(at)];
     busy = (pipe_free_[size_t(at)] == now ? busy : now * kParts) + parts;
-    pipes_free_ = std::max(pipes_free_, pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts);
+    block(at, (busy + kParts - 1) / kParts);
   }
 
   uint32_t index() const { return index_; }
   Stall reason() const { return reason_; }            // what the scheduler's cycles are spent on
   Cycle sleep_until() const { return sleep_until_; }  // nothing happens before, unless a door opens
   bool is_resident(uint32_t warp) const { return resident_ >> warp & 1; }
+  // Returns the number of cycles before `until` that no call has returned yet. All of them have reason().
+  Cycle take_unaccounted(Cycle until) { return until - std::exchange(accounted_until_, until); }
   NextIssue next_of(uint32_t warp) const;
   // Returns the warp whose wait gave the scheduler its reason: the one that can go on first, or the oldest of
   // several. Returns none when the scheduler has no warps.
@@ -148,7 +164,26 @@ class Scheduler {
 
  private:
   void wake() { sleep_until_ = 0; }
-  uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) const;
+  void set_wait(uint32_t warp, Stall wait) {
+    if (wait_[warp] == wait) return;
+    waits_[size_t(wait_[warp])] &= ~(uint64_t{1} << warp);
+    waits_[size_t(wait)] |= uint64_t{1} << warp;
+    wait_[warp] = wait;
+  }
+  void block(Pipe pipe, Cycle until) {
+    pipe_free_[size_t(pipe)] = until;
+    busy_pipes_ |= 1u << int(pipe);
+  }
+  uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) {
+    for (uint32_t rest = busy_pipes_; rest; rest &= rest - 1) {
+      const auto pipe = size_t(std::countr_zero(rest));
+      if (pipe_free_[pipe] > now)
+        ready &= ~needs_pipe_[pipe];
+      else
+        busy_pipes_ &= ~(1u << pipe);
+    }
+    return ready;
+  }
   uint64_t leave_out_full_doors(uint64_t ready, const Doors& doors);
   void find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors);
   Stall reason_of(uint32_t warp, Cycle now, const Doors& doors) const;
@@ -160,7 +195,8 @@ class Scheduler {
   OperandWheel operands_;                         // when the operands of each warp's next instruction come
   std::array<uint64_t, kNumPipes> needs_pipe_{};  // bit i of an entry: warp i issues to that pipe next
   std::array<uint64_t, kNumDoors> needs_door_{};  // bit i of an entry: warp i enters that door next
-  Cycle pipes_free_ = 0;                      // first cycle in which another instruction can go to any pipe
+  std::array<uint64_t, size_t(Stall::Count)> waits_{};  // bit i of an entry: warp i waits for that
+  uint32_t busy_pipes_ = 0;                             // bit p: pipe p may be busy; all others are free
   std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
   std::array<Stall, kMaxWarpsPerScheduler> wait_{};
   std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
@@ -173,6 +209,7 @@ class Scheduler {
   bool watches_rt_ = false, watches_lsu_ = false;
   uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at
   Stall reason_ = Stall::NoWarp;
+  Cycle accounted_until_ = 0;
   std::unique_ptr<IssueScheduler> policy_;
   const bool has_latches_;  // Params::dispatch_latch
   const bool has_banks_;    // Warps that find_ready() returns may be held back after all.

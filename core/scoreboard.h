@@ -25,13 +25,14 @@ class Scoreboard {
   };
 
   void reset() {
-    entries_.fill({});
-    held_.fill(0);
+    entries_.fill(0);
+    reads_.fill({});
   }
   // Returns when all of `registers` are ready. It is not before `start`, which waits for `start.wait`.
   Ready ready(std::span<const uint16_t> registers, Ready start) const {
-    for (uint16_t r : registers) start = later(start, {entries_[r].ready, entries_[r].wait});
-    return start;
+    Entry last = entry(start);
+    for (uint16_t r : registers) last = later(last, entries_[r]);
+    return {ready_at(last), wait_of(last)};
   }
   // Does the same when results reach other pipes `crossing` cycles later than their own and guards `guard`
   // cycles later, and when the instruction's own results may come `slack` cycles after those that it waits
@@ -40,13 +41,14 @@ class Scoreboard {
               Cycle guard, Cycle slack) const {
     const size_t guard_at = row.is_guarded ? size_t(row.num_uses - row.num_defs - 1) : registers.size();
     for (size_t i = 0; i < registers.size(); ++i) {
-      const Entry& entry = entries_[registers[i]];
-      if (entry.ready == 0) continue;
+      const Entry entry = entries_[registers[i]];
+      const Cycle result = ready_at(entry);
+      if (result == 0) continue;
       const bool is_source = i < size_t(row.num_uses - row.num_defs);
-      const bool crosses = entry.from != Pipe::Count && entry.from != row.pipe && is_source;
+      const bool crosses = from_of(entry) != Pipe::Count && from_of(entry) != row.pipe && is_source;
       const Cycle delay = i == guard_at ? guard : crosses ? crossing : 0;
-      const Cycle at = entry.ready == kNever ? kNever : before(entry.ready + delay, is_source ? 0 : slack);
-      start = later(start, {at, entry.wait});
+      const Cycle at = result == kNever ? kNever : before(result + delay, is_source ? 0 : slack);
+      start = later(start, {at, wait_of(entry)});
     }
     return start;
   }
@@ -56,41 +58,56 @@ class Scoreboard {
                        Cycle latency) const {
     start = ready(sources, start);
     for (uint16_t r : results)
-      start = later(start, {before(entries_[r].ready, latency - 1), entries_[r].wait});
+      start = later(start, {before(ready_at(entries_[r]), latency - 1), wait_of(entries_[r])});
     return start;
   }
   // Returns when all of `registers` have been read by the instructions that hold them.
   Ready unread(std::span<const uint16_t> registers, Ready start) const {
     for (uint16_t r : registers) {
-      const Cycle at = entries_[r].readers ? kNever : held_[r];
+      const Cycle at = reads_[r].readers ? kNever : reads_[r].until;
       start = later(start, {at, Stall::OperandRead});
     }
     return start;
   }
   void hold(std::span<const uint16_t> registers) {
-    for (uint16_t r : registers) ++entries_[r].readers;
+    for (uint16_t r : registers) ++reads_[r].readers;
   }
   // Notes that an instruction which holds the registers reads them until `end`.
   void read(std::span<const uint16_t> registers, Cycle end) {
     for (uint16_t r : registers) {
-      --entries_[r].readers;
-      held_[r] = std::max(held_[r], end);
+      --reads_[r].readers;
+      reads_[r].until = std::max<Cycle>(reads_[r].until, end);
     }
   }
   // Sets the ready time. `from` is the pipe whose result it is. Count stands for a result that reaches all
   // pipes at the same time.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
-    for (uint16_t r : registers) {
-      Entry& entry = entries_[r];
-      entry.ready = value.at;
-      entry.wait = value.wait;
-      entry.from = from;
-    }
+    for (uint16_t r : registers) entries_[r] = entry(value, from);
   }
 
  private:
-  // Returns the later of two, the first if they are equal. There is no branch, because which of an
+  // Holds when a register is ready, what it waits for until then, and the pipe whose result it is, from the
+  // highest bits to the lowest. One comparison of two words then finds the later of two registers.
+  using Entry = uint64_t;
+  static constexpr int kReadyShift = 16, kWaitShift = 8;
+  static constexpr Cycle kNeverHere = kNever >> kReadyShift;  // stands for kNever
+
+  static Entry entry(const Ready& value, Pipe from = Pipe::Count) {
+    return value.at << kReadyShift | Entry(value.wait) << kWaitShift | Entry(from);
+  }
+  static Cycle ready_at(Entry entry) {
+    const Cycle at = entry >> kReadyShift;
+    return at == kNeverHere ? kNever : at;
+  }
+  static Stall wait_of(Entry entry) { return Stall(entry >> kWaitShift & 0xff); }
+  static Pipe from_of(Entry entry) { return Pipe(entry & 0xff); }
+
+  // These return the later of two, the first if they are equal. There is no branch, because which of an
   // instruction's registers comes last cannot be foreseen.
+  static Entry later(Entry first, Entry second) {
+    constexpr Entry kBelowReady = (Entry{1} << kReadyShift) - 1;
+    return second > (first | kBelowReady) ? second : first;
+  }
   static Ready later(const Ready& first, const Ready& second) {
     const bool takes_second = second.at > first.at;
     return {takes_second ? second.at : first.at, takes_second ? second.wait : first.wait};
@@ -99,17 +116,15 @@ class Scoreboard {
     return at == kNever ? kNever : std::max(at, cycles) - cycles;
   }
 
-  // What is needed of a register lies together, because an instruction looks at few registers.
-  struct Entry {
-    Cycle ready = 0;
-    Stall wait = Stall::RawFixed;
-    Pipe from = Pipe::Count;
-    uint16_t readers = 0;  // memory instructions that have not read the register yet
+  // Says who reads a register that another instruction is about to overwrite.
+  struct Reads {
+    uint64_t until : 48 = 0;    // It is read until then.
+    uint64_t readers : 16 = 0;  // memory instructions that have not read the register yet
   };
-  static_assert(sizeof(Entry) == 16);
+  static_assert(sizeof(Reads) == 8);
 
   std::array<Entry, kScoreboardEntries> entries_{};
-  std::array<Cycle, kScoreboardEntries> held_{};  // held until then by instructions that are reading it
+  std::array<Reads, kScoreboardEntries> reads_{};
 };
 
 }  // namespace glint::core

@@ -17,7 +17,6 @@ namespace glint::core {
 // in the scheduler instead, as arrays over its warps.
 struct WarpSlot {
   exec::WarpContext warp;
-  Scoreboard scoreboard;
   Scoreboard::Ready front;  // the warp issues nothing before this cycle, whatever its registers say
   Sequence sequence;        // the sequence that the warp is in
   uint32_t line = InstructionFetch::kNone;  // the line of instructions that the warp is in or waits for
@@ -25,6 +24,7 @@ struct WarpSlot {
   BlockSlot* home = nullptr;       // the slot of the warp's block
   Scheduler* scheduler = nullptr;  // the slot's scheduler, which never changes
   uint32_t local = 0;              // the number of the slot in its scheduler
+  Scoreboard scoreboard;
 };
 
 }  // namespace glint::core

@@ -23,6 +23,8 @@ WarpSlots::WarpSlots(uint32_t size, const Params& params, const exec::World& wor
       observers_(observers),
       fetch_(fetch),
       holds_operands_(params.lsu.holds_operands()),
+      is_plain_(params.pipe_crossing + params.guard_delay == 0 && params.write_order && !holds_operands_ &&
+                !fetch),
       prologue_(params.prologue.instructions +
                 (world.shared_bytes > 0 ? params.prologue.shared_instructions : 0)),
       slots_(size),
@@ -64,8 +66,7 @@ void WarpSlots::free(uint32_t slot, Cycle now) {
   observers_.tell([&](CoreObserver& observer) { observer.end_warp(now, slot); });
 }
 
-void WarpSlots::refresh(uint32_t slot, Cycle now) {
-  WarpSlot& at = slots_[slot];
+void WarpSlots::refresh_in_full(WarpSlot& at, Cycle now) {
   if (fetch_) come_to_line(at, now);
   if (at.sequence.is_under_way()) {
     // The rest of a sequence needs only an issue slot. It has no operands, and the memory pipe, which stands
@@ -75,13 +76,7 @@ void WarpSlots::refresh(uint32_t slot, Cycle now) {
   }
   const IssueRow& row = table_.row(at.warp.simt.pc);
   const Scoreboard::Ready ready = operands_ready(at, row);
-  at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, door_of(row)});
-}
-
-Door WarpSlots::door_of(const IssueRow& row) const {
-  if (row.finish == Finish::Rays) return Door::RtUnit;
-  if (row.finish != Finish::Memory && row.finish != Finish::CallRecord) return Door::None;
-  return row.is_texture && params_.texture.queue > 0 ? Door::Texture : Door::Lsu;
+  at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door});
 }
 
 Scoreboard::Ready WarpSlots::operands_ready(const WarpSlot& slot, const IssueRow& row) const {

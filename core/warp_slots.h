@@ -29,13 +29,25 @@ class WarpSlots {
   uint64_t num_launched() const { return num_launched_; }
   bool is_resident(uint32_t slot) const { return slots_[slot].scheduler->is_resident(slots_[slot].local); }
   uint32_t first_free() const;
+  // Returns whether some scheduler has something to do in cycle `now`, whatever the doors that it watches do.
+  bool any_awake(Cycle now) const {
+    for (const Scheduler& scheduler : schedulers_)
+      if (scheduler.sleep_until() <= now) return true;
+    return false;
+  }
 
   // Starts the warp in the slot, which the executor has started. It can issue its first instruction at
   // `ready`.
   void start(uint32_t slot, BlockSlot& home, Cycle ready, Cycle now);
   // Looks up when the warp's next instruction is present and has its operands. It has to be called after each
   // change to the warp's front, scoreboard, sequence or place in the program.
-  void refresh(uint32_t slot, Cycle now);
+  void refresh(uint32_t slot, Cycle now) { refresh(slots_[slot], now); }
+  void refresh(WarpSlot& at, Cycle now) {
+    if (!is_plain_ || at.sequence.is_under_way()) return refresh_in_full(at, now);
+    const IssueRow& row = table_.row(at.warp.simt.pc);
+    const Scoreboard::Ready ready = at.scoreboard.ready(table_.uses(row), at.front);
+    at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door});
+  }
   // Notes that the warp has ended while its last accesses have not.
   void drain(uint32_t slot) { slots_[slot].scheduler->drain(slots_[slot].local); }
   // Notes that the warp has ended with all of its accesses. Another warp can take the slot.
@@ -45,15 +57,16 @@ class WarpSlots {
   void take_line(uint32_t scheduler, uint32_t line, Cycle now);
 
  private:
+  void refresh_in_full(WarpSlot& at, Cycle now);
   void come_to_line(WarpSlot& slot, Cycle now);
   Scoreboard::Ready operands_ready(const WarpSlot& slot, const IssueRow& row) const;
-  Door door_of(const IssueRow& row) const;
 
   const Params& params_;
   const IssueTable& table_;
   const CoreObservers& observers_;
   InstructionFetch* const fetch_;
   const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
+  const bool is_plain_;        // Operands are ready when the scoreboard says so, and nothing else counts.
   const uint32_t prologue_;    // machine instructions before a warp's first instruction
   std::vector<Scheduler> schedulers_;
   std::vector<WarpSlot> slots_;

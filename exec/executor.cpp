@@ -42,21 +42,12 @@ void Executor::start(WarpContext& warp, uint32_t warp_index) const {
   start(warp, *warp.own_block, 0);
 }
 
-Issued Executor::execute(WarpContext& warp, Cycle now) {
+Issued Executor::execute_effect(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Cycle now) {
   const uint32_t pc = warp.simt.pc;
-  const isa::Inst& inst = world_.image->code[pc];
-  const isa::OpRow& row = *world_.image->rows[pc];
-  LaneMask exec = warp.simt.active;
-  Issued issued{pc, &inst, &row, exec, exec, false};
-  if (inst.guard != isa::kNoGuard) {
-    const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
-    exec &= inst.guard & isa::kGuardNegate ? ~guard : guard;
-  }
-  warp.regs.exec = exec;
+  Issued issued{pc, &inst, &row, warp.regs.exec, warp.simt.active, false};
   if (reads_clock_) [[unlikely]]
     fill_clock(warp, now, clock_mhz_);
   if (seen_.is_used()) seen_.view().begin(now);
-
   bool ok = true;
   if (row.effect == Effect::None) {
     row.run(warp.regs, inst, row);

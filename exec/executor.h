@@ -78,7 +78,24 @@ class Executor {
   // then calls finish_rays(). With World::traversal they call its program instead, like a shader, and no lane
   // that waits is Traversing. A bar.* that has to wait leaves `warp.waiting_at_barrier` set: the warp may be
   // executed again when another warp of its block has come or ended, and has cleared it.
-  Issued execute(WarpContext& warp, Cycle now);
+  Issued execute(WarpContext& warp, Cycle now) {
+    const uint32_t pc = warp.simt.pc;
+    const isa::Inst& inst = world_.image->code[pc];
+    const isa::OpRow& row = *world_.image->rows[pc];
+    LaneMask exec = warp.simt.active;
+    if (inst.guard != isa::kNoGuard) {
+      const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
+      exec &= inst.guard & isa::kGuardNegate ? ~guard : guard;
+    }
+    warp.regs.exec = exec;
+    if (row.effect != isa::Effect::None || reads_clock_) return execute_effect(warp, inst, row, now);
+    const Issued issued{pc, &inst, &row, exec, warp.simt.active, false};
+    row.run(warp.regs, inst, row);
+    ++warp.simt.pc;
+    ++warp.instructions;
+    retired.fire([&] { return Retired{warp, issued}; });
+    return issued;
+  }
   // Writes the answer predicate of the rays that the warp waits for.
   void finish_rays(WarpContext& warp) const { rays_.finish(warp); }
 
@@ -111,6 +128,7 @@ class Executor {
   const World& world() const { return world_; }
 
  private:
+  Issued execute_effect(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Cycle now);
   bool dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool is_in_trace(WarpContext& warp, const isa::OpRow& row);
 

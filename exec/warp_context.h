@@ -48,9 +48,14 @@ struct HitObject {
   uint32_t time = 0;  // bits of a float
 };
 
+// What every instruction touches comes first and lies together.
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
+  uint64_t instructions = 0;      // instructions retired since the start, for the instruction budget
+  bool waiting_for_rays = false;  // An rt.trace or rt.resume has not been finished.
+  bool waiting_at_barrier =
+      false;                // It executes nothing until another warp of the block has opened the barrier.
   uint32_t warp_index = 0;  // number in the launch, in the order of World::layout
   Block* block = nullptr;   // the block that the warp belongs to
   uint32_t warp_in_block = 0;
@@ -63,17 +68,14 @@ struct WarpContext {
   std::array<uint32_t, kLanes> next_time{};
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
   Numbered<rt::RayState> queries;
-  std::vector<uint32_t> local;    // [word][lane]
-  uint64_t instructions = 0;      // instructions retired since the start, for the instruction budget
-  bool waiting_for_rays = false;  // An rt.trace or rt.resume has not been finished.
-  LaneMask ray_lanes = 0;         // lanes that it handed over
-  rt::RayState* rays = nullptr;   // one per lane, in `frames` or `queries`
-  isa::Slot ray_answer = 0;       // predicate that receives the answer
-  LaneMask walking = 0;           // the lanes of ray_lanes whose rays World::traversal walks
+  std::vector<uint32_t> local;   // [word][lane]
+  LaneMask ray_lanes = 0;        // lanes that it handed over
+  rt::RayState* rays = nullptr;  // one per lane, in `frames` or `queries`
+  isa::Slot ray_answer = 0;      // predicate that receives the answer
+  LaneMask walking = 0;          // the lanes of ray_lanes whose rays World::traversal walks
 
-  // The warp executes nothing until another warp of the block has opened the barrier.
-  bool waiting_at_barrier = false;
-  uint32_t barrier = 0, barrier_pc = 0;  // then: the barrier, and the instruction that waits
+  // While it waits at a barrier, these are the barrier and the instruction that waits.
+  uint32_t barrier = 0, barrier_pc = 0;
   LaneMask barrier_lanes = 0;
 
   std::unique_ptr<Block> own_block;  // used in a launch without blocks, where each warp is a block of its own
