@@ -102,14 +102,13 @@ void CoreCell::advance(Cycle from, Cycle until) {
   Cycle now = no_skip_ ? from : next_event(from);
   while (now < until && !fault()) {
     step(now++);
-    if (!no_skip_ && !warps_.any_awake(now)) now = next_event(now);
+    if (!no_skip_ && warps_.next_alarm() > now) now = next_event(now);
   }
 }
 
 Cycle CoreCell::next_event(Cycle from) const {
   if (fault()) return kNever;
-  Cycle next = kNever;
-  for (const Scheduler& scheduler : warps_.schedulers()) next = std::min(next, scheduler.sleep_until());
+  Cycle next = warps_.next_alarm();
   if (next <= from) return from;
   if (from == 0) return finished() ? next : from;
   if (code_) next = std::min(next, code_->next_event(from - 1));
@@ -129,8 +128,11 @@ void CoreCell::step(Cycle now) {
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);
   rays_.take_answers(now);
-  for (Scheduler& scheduler : warps_.schedulers()) {
-    if (!scheduler.is_awake(now, doors_) && !no_skip_) continue;
+  const Alarms& alarms = warps_.alarms();
+  for (uint32_t s = 0; s < params_.schedulers; ++s) {
+    Scheduler& scheduler = warps_.schedulers()[s];
+    const bool sees = alarms.watching >> s & 1 && scheduler.sees_open_door(doors_);
+    if (alarms.sleep_until[s] > now && !sees && !no_skip_) continue;
     issue_.run(scheduler, now);
     if (fault()) break;
   }

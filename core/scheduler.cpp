@@ -6,8 +6,9 @@
 
 namespace glint::core {
 
-Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params)
+Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params, Alarms& alarms)
     : index_(index),
+      alarms_(alarms),
       policy_(params.issue.make({(slots + params.schedulers - 1) / params.schedulers})),
       has_latches_(params.dispatch_latch),
       has_banks_(params.register_file.banks > 0) {
@@ -30,39 +31,38 @@ uint64_t Scheduler::leave_out_full_doors(uint64_t ready, const Doors& doors) {
   uint64_t full = 0;
   if (at(Door::Lsu) && !doors.lsu.can_take(index_)) full |= at(Door::Lsu);
   if (at(Door::Texture) && !doors.lsu.can_take(index_, true)) full |= at(Door::Texture);
-  watches_lsu_ = full != 0;
+  const bool watches_lsu = full != 0;
   lsu_vacated_ = doors.lsu.num_vacated();
   watches_rt_ = at(Door::RtUnit) && !doors.rt.can_accept();
   if (watches_rt_) full |= at(Door::RtUnit);
+  watches_lsu_ = watches_lsu;
+  if (watches_lsu_ || watches_rt_) alarms_.watching |= 1u << index_;
   return ready & ~full;
 }
 
 // Finds the reason of a cycle without issue, and when it ends. `waiting` are the warps without their
-// operands; `at_pipes` and `at_doors` are those in front of busy pipes and full doors.
+// operands; `at_pipes` and `at_doors` are those in front of busy pipes and full doors. A warp in front of a
+// pipe is nearest to issue, and one that waits for operands is farthest.
 void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors) {
   Cycle next = operands_.next();
-  Stall reason = Stall::NoWarp;
-  if (waiting) {
-    size_t first = size_t(Stall::RawFixed);  // the nearest of those that warps wait for
-    while (!(waits_[first] & waiting)) ++first;
-    reason = Stall(first);
+  if (at_pipes) {
+    reason_ = Stall::MathThrottle;
+    for (uint32_t rest = busy_pipes_; rest; rest &= rest - 1) {
+      const auto pipe = size_t(std::countr_zero(rest));
+      if (at_pipes & needs_pipe_[pipe]) next = std::min(next, pipe_free_[pipe]);
+    }
+  } else if (at_doors) {
+    reason_ = at_doors & needs_door_[size_t(Door::Lsu)]       ? Stall::LsuThrottle
+              : at_doors & needs_door_[size_t(Door::Texture)] ? Stall::TexThrottle
+                                                              : Stall::RtFull;
+  } else if (waiting) {
+    auto nearest = size_t(Stall::RawFixed);
+    while (!(waits_[nearest] & waiting)) ++nearest;
+    reason_ = Stall(nearest);
+  } else {
+    reason_ = Stall::NoWarp;
   }
-  if (!(at_pipes | at_doors)) {
-    reason_ = reason;
-    sleep_until_ = next;
-    return;
-  }
-  const auto blame = [&](uint64_t warps, Stall stall) {
-    if (warps) reason = std::min(reason, stall);
-  };
-  blame(at_pipes, Stall::MathThrottle);
-  blame(at_doors & needs_door_[size_t(Door::Lsu)], Stall::LsuThrottle);
-  blame(at_doors & needs_door_[size_t(Door::Texture)], Stall::TexThrottle);
-  blame(at_doors & needs_door_[size_t(Door::RtUnit)], Stall::RtFull);
-  for (size_t pipe = 0; at_pipes && pipe < size_t(kNumPipes); ++pipe)
-    if (at_pipes & needs_pipe_[pipe]) next = std::min(next, pipe_free_[pipe]);
-  reason_ = reason;
-  sleep_until_ = next;
+  sleep_until() = next;
 }
 
 NextIssue Scheduler::next_of(uint32_t warp) const {

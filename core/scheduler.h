@@ -57,14 +57,22 @@ class RegisterBanks {
   std::array<Cycle, kMaxRegisterBanks> port_free_{};  // first cycle in which the bank's port is free
 };
 
+// Holds when the schedulers of a core wake up. The entries lie together because a core looks at all of them
+// in each of its cycles.
+struct Alarms {
+  std::array<Cycle, kMaxSchedulers>
+      sleep_until{};      // by scheduler: nothing happens before, unless a door opens
+  uint32_t watching = 0;  // bit s: scheduler s watches a door
+};
+
 // Issues from its warps, which it numbers locally: warp slot w is warp w / schedulers of scheduler w mod
 // schedulers. A scheduler sleeps while no warp can issue and its reason stays the same. Three things end the
 // sleep: the cycle that it waits for comes, somebody tells of a change to one of its warps, or a door that it
 // watches may have opened.
 class Scheduler {
  public:
-  // `slots` is the number of warp slots of the whole core.
-  Scheduler(uint32_t index, uint32_t slots, const Params& params);
+  // `slots` is the number of warp slots of the whole core. `alarms` outlives the scheduler.
+  Scheduler(uint32_t index, uint32_t slots, const Params& params, Alarms& alarms);
 
   // These calls say what happens to warps. Each wakes the scheduler, except drain().
   void add(uint32_t warp, uint64_t age);
@@ -92,13 +100,13 @@ class Scheduler {
   // sleeps.
   void become_empty() {
     reason_ = Stall::NoWarp;
-    sleep_until_ = kNever;
-    watches_rt_ = watches_lsu_ = false;
+    sleep_until() = kNever;
+    watch_nothing();
   }
 
-  // Returns whether find_ready() may give another result than the last time.
-  bool is_awake(Cycle now, const Doors& doors) const {
-    return now >= sleep_until_ || (watches_rt_ && doors.rt.can_accept()) ||
+  // Returns whether a door that the scheduler watches may have opened.
+  bool sees_open_door(const Doors& doors) const {
+    return (watches_rt_ && doors.rt.can_accept()) ||
            (watches_lsu_ && lsu_vacated_ != doors.lsu.num_vacated());
   }
   // Returns the warps that can issue now, as bits. When no bit is set, reason() says why, and the scheduler
@@ -108,7 +116,8 @@ class Scheduler {
     const uint64_t operands = resident_ & ~operands_.missing();
     const uint64_t piped = leave_out_busy_pipes(operands, now);
     uint64_t ready = piped;
-    watches_lsu_ = watches_rt_ = false;
+    if (alarms_.watching >> index_ & 1) [[unlikely]]
+      watch_nothing();
     if (ready & ~needs_door_[size_t(Door::None)]) ready = leave_out_full_doors(ready, doors);
     if (!ready || has_banks_) find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
     return ready;
@@ -116,14 +125,14 @@ class Scheduler {
   // Holds back warps of `ready` whose register reads meet those of earlier instructions until `next`.
   void hold_for_banks(Cycle next) {
     reason_ = std::min(reason_, Stall::RegisterBanks);
-    sleep_until_ = std::min(sleep_until_, next);
+    sleep_until() = std::min(sleep_until(), next);
   }
   // Chooses one warp of `ready`, which is not 0. The cycle is spent on issuing.
   uint32_t pick(uint64_t ready, Cycle now) {
     const uint32_t warp = policy_->pick({ready, {age_.data(), age_.size()}, now});
     GLINT_DCHECK(ready >> warp & 1, "the issue policy chose warp {}, which is not ready", warp);
     reason_ = Stall::Issued;
-    sleep_until_ = now + 1;
+    sleep_until() = now + 1;
     return warp;
   }
 
@@ -150,8 +159,7 @@ class Scheduler {
   }
 
   uint32_t index() const { return index_; }
-  Stall reason() const { return reason_; }            // what the scheduler's cycles are spent on
-  Cycle sleep_until() const { return sleep_until_; }  // nothing happens before, unless a door opens
+  Stall reason() const { return reason_; }  // what the scheduler's cycles are spent on
   bool is_resident(uint32_t warp) const { return resident_ >> warp & 1; }
   // Returns the number of cycles before `until` that no call has returned yet. All of them have reason().
   Cycle take_unaccounted(Cycle until) { return until - std::exchange(accounted_until_, until); }
@@ -163,7 +171,12 @@ class Scheduler {
   RegisterBanks banks;
 
  private:
-  void wake() { sleep_until_ = 0; }
+  Cycle& sleep_until() { return alarms_.sleep_until[index_]; }
+  void wake() { sleep_until() = 0; }
+  void watch_nothing() {
+    watches_rt_ = watches_lsu_ = false;
+    alarms_.watching &= ~(1u << index_);
+  }
   void set_wait(uint32_t warp, Stall wait) {
     if (wait_[warp] == wait) return;
     waits_[size_t(wait_[warp])] &= ~(uint64_t{1} << warp);
@@ -191,6 +204,7 @@ class Scheduler {
   // Each field of a warp is an array over all warps, or a bit of each of several words. find_ready() reads
   // them in almost every cycle of a core.
   const uint32_t index_;
+  Alarms& alarms_;
   uint64_t resident_ = 0;                         // bit i: warp i holds its slot
   OperandWheel operands_;                         // when the operands of each warp's next instruction come
   std::array<uint64_t, kNumPipes> needs_pipe_{};  // bit i of an entry: warp i issues to that pipe next
@@ -204,7 +218,6 @@ class Scheduler {
   std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
   std::array<Cycle, kNumPipes> pipe_busy_{};           // end of the pipe's work, in parts of a cycle
 
-  Cycle sleep_until_ = 0;
   // These are the doors that were full. The second stands for both queues of the load-store unit.
   bool watches_rt_ = false, watches_lsu_ = false;
   uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at

@@ -32,7 +32,7 @@ WarpSlots::WarpSlots(uint32_t size, const Params& params, const exec::World& wor
   GLINT_CHECK(size > 0, "no warp fits: check() reports this");
   GLINT_CHECK(blocks_.size() > 0, "no block fits: check_block() reports this");
   schedulers_.reserve(params.schedulers);
-  for (uint32_t s = 0; s < params.schedulers; ++s) schedulers_.emplace_back(s, size, params);
+  for (uint32_t s = 0; s < params.schedulers; ++s) schedulers_.emplace_back(s, size, params, *alarms_);
   for (uint32_t slot = 0; slot < size; ++slot) {
     slots_[slot].scheduler = &schedulers_[slot % params.schedulers];
     slots_[slot].local = slot / params.schedulers;

@@ -1,7 +1,9 @@
 // Holds the warp slots of a core and the schedulers that they belong to.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/core_observer.h"
@@ -29,11 +31,13 @@ class WarpSlots {
   uint64_t num_launched() const { return num_launched_; }
   bool is_resident(uint32_t slot) const { return slots_[slot].scheduler->is_resident(slots_[slot].local); }
   uint32_t first_free() const;
-  // Returns whether some scheduler has something to do in cycle `now`, whatever the doors that it watches do.
-  bool any_awake(Cycle now) const {
-    for (const Scheduler& scheduler : schedulers_)
-      if (scheduler.sleep_until() <= now) return true;
-    return false;
+  const Alarms& alarms() const { return *alarms_; }
+  // Returns the first cycle in which some scheduler has something to do, whatever the doors that it watches
+  // do.
+  Cycle next_alarm() const {
+    Cycle next = kNever;
+    for (size_t s = 0; s < schedulers_.size(); ++s) next = std::min(next, alarms_->sleep_until[s]);
+    return next;
   }
 
   // Starts the warp in the slot, which the executor has started. It can issue its first instruction at
@@ -68,6 +72,7 @@ class WarpSlots {
   const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
   const bool is_plain_;        // Operands are ready when the scoreboard says so, and nothing else counts.
   const uint32_t prologue_;    // machine instructions before a warp's first instruction
+  const std::unique_ptr<Alarms> alarms_ = std::make_unique<Alarms>();  // the schedulers refer to it
   std::vector<Scheduler> schedulers_;
   std::vector<WarpSlot> slots_;
   BlockSlots blocks_;
