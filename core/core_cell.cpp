@@ -3,6 +3,7 @@
 #include "core/core_cell.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 
 #include "base/check.h"
@@ -17,12 +18,12 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       l1_(context.l1),
       rt_(context.rt),
       no_skip_(context.no_skip),
-      table_(*context.world.image, params),
+      table_(context.table ? context.table : std::make_shared<IssueTable>(*context.world.image, params)),
       executor_(context.world, context.clock_mhz),
       view_(context.turn ? std::make_unique<exec::MemoryView>() : nullptr),
       counts_(context.parent, context.name, context.world.image->code.size()),
       code_(CodeSupply::make(params_, context.world, context.places, context.l1, &counts_.stats)),
-      warps_(occupancy(params, context.world.image->num_registers), params_, context.world, table_,
+      warps_(occupancy(params, context.world.image->num_registers), params_, context.world, *table_,
              code_ ? code_->fetch() : nullptr, observers_),
       lsu_(params, context.l1),
       memory_(parts(), {lsu_,
@@ -128,19 +129,31 @@ void CoreCell::step(Cycle now) {
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);
   rays_.take_answers(now);
-  const Alarms& alarms = warps_.alarms();
-  for (uint32_t s = 0; s < params_.schedulers; ++s) {
-    Scheduler& scheduler = warps_.schedulers()[s];
-    const bool sees = alarms.watching >> s & 1 && scheduler.sees_open_door(doors_);
-    if (alarms.sleep_until[s] > now && !sees && !no_skip_) continue;
-    issue_.run(scheduler, now);
-    if (fault()) break;
+  // An issue may wake schedulers that come after its own, and these still have their turn in this cycle.
+  for (uint32_t awake = find_awake(now), passed = 0; (awake &= ~passed) != 0 && !fault();) {
+    const auto s = uint32_t(std::countr_zero(awake));
+    issue_.run(warps_.schedulers()[s], now);
+    passed = (2u << s) - 1;
+    awake = find_awake(now);
   }
   active_until_ = now + 1;
   if (warps_.num_resident() != residents_) [[unlikely]] {
     count_residents(now);
     if (residents_ == 0) become_empty(now + 1);
   }
+}
+
+// Returns the schedulers that have something to do in cycle `now`, as bits.
+uint32_t CoreCell::find_awake(Cycle now) const {
+  const Alarms& alarms = warps_.alarms();
+  uint32_t awake = 0;
+  for (uint32_t s = 0; s < params_.schedulers; ++s)
+    awake |= uint32_t{no_skip_ || alarms.sleep_until[s] <= now} << s;
+  for (uint32_t rest = alarms.watching & ~awake; rest; rest &= rest - 1) {
+    const auto s = uint32_t(std::countr_zero(rest));
+    awake |= uint32_t{warps_.schedulers()[s].sees_open_door(doors_)} << s;
+  }
+  return awake;
 }
 
 // Notes that the number of resident warps may be another one from cycle `now` on.
@@ -166,7 +179,7 @@ void CoreCell::finish(Cycle end) {
   stats.cycles += end;
   stats.slot_cycles += end * params_.warps;
   sampler_.finish(end);
-  counts_.settle(table_, *world_.image);
+  counts_.settle(*table_, *world_.image);
   const exec::CandidateCounts& candidates = executor_.candidates();
   for (int stage = 0; stage < kNumStages; ++stage)
     stats.stage[size_t(stage)]->invocations += executor_.called_lanes(isa::Stage(stage));

@@ -46,6 +46,8 @@ class CoreCell final : public Cell {
     Address tables = 0;  // physical address of the candidates of the core's rays, with table_bytes() bytes
     CodePlaces places;   // used when the caches of instructions or constants are not perfect
     Cycle turn = 0;      // cycles after which other cores see what this one wrote; 0: there are no others
+    std::shared_ptr<const IssueTable>
+        table;  // of the program and the parameters; null: the core makes its own
   };
   // The program and the parameters must have passed check().
   CoreCell(const Params& params, const Context& context);
@@ -132,16 +134,17 @@ class CoreCell final : public Cell {
  private:
   void launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now);
   void step(Cycle now);
+  uint32_t find_awake(Cycle now) const;
   void count_residents(Cycle now);
   void become_empty(Cycle now);
-  CoreParts parts() { return {params_, world_, table_, executor_, warps_, counts_, observers_}; }
+  CoreParts parts() { return {params_, world_, *table_, executor_, warps_, counts_, observers_}; }
 
   const Params params_;
   const exec::World& world_;
   mem::L1Port& l1_;
   rt::RtPort& rt_;
   const bool no_skip_;
-  const IssueTable table_;
+  const std::shared_ptr<const IssueTable> table_;
   exec::Executor executor_;
   const std::unique_ptr<exec::MemoryView> view_;
   CoreCounts counts_;

@@ -63,7 +63,7 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
   if (row.is_sequence)
     start_sequence(at, row, issued.pc, now);
   else
-    at.scoreboard.set(core_.table.defs(row), {now + late + row.latency, row.wait},
+    at.scoreboard.set(row, core_.table.defs(row), {now + late + row.latency, row.wait},
                       row.alternates ? Pipe::Count : row.pipe);
 }
 
@@ -74,9 +74,10 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
   WarpSlot& at = core_.warps[slot];
   const Cycle done = now + late + row.latency;
   at.front = {now + 1, Stall::RawFixed};
+  if (row.finish == Finish::Fixed) [[likely]]
+    return finish_fixed(slot, row, issued, late, now);
   switch (row.finish) {
     case Finish::Fixed:
-      finish_fixed(slot, row, issued, late, now);
       break;
     case Finish::Control:
       at.front = {done, row.wait};

@@ -137,6 +137,8 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     add_operands(registers_, op, inst, true);
     row.num_uses = uint8_t(registers_.size() - row.first_use);
     row.num_defs = uint8_t(registers_.size() - first_def);
+    std::copy_n(uses(row).begin(), std::min(uses(row).size(), IssueRow::kFirstUses), row.first_uses.begin());
+    if (row.num_defs > 0) row.first_def = defs(row).front();
     row.finish = finish_of(op);
     row.pipe = row.finish == Finish::Memory ? Pipe::Memory : pipe_of(op.unit);
     row.stage = image.shaders[image.shader_of[pc]].stage;

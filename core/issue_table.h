@@ -28,7 +28,13 @@ inline constexpr int kNumDoors = int(Door::Count);
 
 using isa::Finish;  // the fixed times of an instruction are IssueRow::latency
 
-struct IssueRow {
+// This is the scoreboard index of the first predicate. The indices of 32-bit registers come first. The last
+// two indices belong to no register: one is always ready, and nobody reads the other.
+inline constexpr uint16_t kFirstPredicate = 256;
+inline constexpr uint16_t kNoUse = kFirstPredicate + isa::kNumPredicates, kNoDef = kNoUse + 1;
+inline constexpr uint16_t kScoreboardEntries = kNoDef + 1;
+
+struct alignas(32) IssueRow {
   // This is the index into IssueTable's list of registers that have to be ready, the destinations last.
   uint32_t first_use = 0;
   uint8_t num_uses = 0;  // including the destinations
@@ -46,12 +52,13 @@ struct IssueRow {
   isa::AtomicKind atomic : 2 = isa::AtomicKind::Integer;
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle
+  // These are the first of the registers that have to be ready, and the first destination. Most instructions
+  // have no more. Loops of a fixed length over these cost the host no mispredicted branch.
+  static constexpr size_t kFirstUses = 4;
+  std::array<uint16_t, kFirstUses> first_uses{kNoUse, kNoUse, kNoUse, kNoUse};
+  uint16_t first_def = kNoDef;
 };
-static_assert(sizeof(IssueRow) == 16);
-
-// This is the scoreboard index of the first predicate. The indices of 32-bit registers come first.
-inline constexpr uint16_t kFirstPredicate = 256;
-inline constexpr uint16_t kScoreboardEntries = kFirstPredicate + isa::kNumPredicates;
+static_assert(sizeof(IssueRow) == 32);
 
 // Holds all instructions of an image. It is not written while the core runs.
 class IssueTable {

@@ -47,10 +47,8 @@ void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doo
   Cycle next = operands_.next();
   if (at_pipes) {
     reason_ = Stall::MathThrottle;
-    for (uint32_t rest = busy_pipes_; rest; rest &= rest - 1) {
-      const auto pipe = size_t(std::countr_zero(rest));
-      if (at_pipes & needs_pipe_[pipe]) next = std::min(next, pipe_free_[pipe]);
-    }
+    for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe)
+      next = std::min(next, at_pipes & needs_pipe_[pipe] ? pipe_free_[pipe] : kNever);
   } else if (at_doors) {
     reason_ = at_doors & needs_door_[size_t(Door::Lsu)]       ? Stall::LsuThrottle
               : at_doors & needs_door_[size_t(Door::Texture)] ? Stall::TexThrottle

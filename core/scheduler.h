@@ -145,7 +145,7 @@ class Scheduler {
     Cycle& busy = pipe_busy_[size_t(at)];
     const Cycle start = std::max(busy, now * kParts);
     busy = start + parts;
-    block(at, start / kParts + 1);
+    pipe_free_[size_t(at)] = start / kParts + 1;
     return start / kParts - now;
   }
   // Sends an instruction to a pipe that is free. Intervals that are not a whole number of cycles are kept on
@@ -155,7 +155,7 @@ class Scheduler {
     constexpr Cycle kParts = OpTime::kParts;
     Cycle& busy = pipe_busy_[size_t(at)];
     busy = (pipe_free_[size_t(at)] == now ? busy : now * kParts) + parts;
-    block(at, (busy + kParts - 1) / kParts);
+    pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts;
   }
 
   uint32_t index() const { return index_; }
@@ -183,19 +183,12 @@ class Scheduler {
     waits_[size_t(wait)] |= uint64_t{1} << warp;
     wait_[warp] = wait;
   }
-  void block(Pipe pipe, Cycle until) {
-    pipe_free_[size_t(pipe)] = until;
-    busy_pipes_ |= 1u << int(pipe);
-  }
-  uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) {
-    for (uint32_t rest = busy_pipes_; rest; rest &= rest - 1) {
-      const auto pipe = size_t(std::countr_zero(rest));
-      if (pipe_free_[pipe] > now)
-        ready &= ~needs_pipe_[pipe];
-      else
-        busy_pipes_ &= ~(1u << pipe);
-    }
-    return ready;
+  // There is no branch, because which pipes are busy cannot be foreseen.
+  uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) const {
+    uint64_t busy = 0;
+    for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe)
+      busy |= needs_pipe_[pipe] & (uint64_t{0} - uint64_t{pipe_free_[pipe] > now});
+    return ready & ~busy;
   }
   uint64_t leave_out_full_doors(uint64_t ready, const Doors& doors);
   void find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors);
@@ -210,7 +203,6 @@ class Scheduler {
   std::array<uint64_t, kNumPipes> needs_pipe_{};  // bit i of an entry: warp i issues to that pipe next
   std::array<uint64_t, kNumDoors> needs_door_{};  // bit i of an entry: warp i enters that door next
   std::array<uint64_t, size_t(Stall::Count)> waits_{};  // bit i of an entry: warp i waits for that
-  uint32_t busy_pipes_ = 0;                             // bit p: pipe p may be busy; all others are free
   std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
   std::array<Stall, kMaxWarpsPerScheduler> wait_{};
   std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};

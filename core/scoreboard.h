@@ -34,6 +34,14 @@ class Scoreboard {
     for (uint16_t r : registers) last = later(last, entries_[r]);
     return {ready_at(last), wait_of(last)};
   }
+  // Does the same for `uses`, the registers of `row`.
+  Ready ready(const IssueRow& row, std::span<const uint16_t> uses, Ready start) const {
+    Entry last = entry(start);
+    for (uint16_t r : row.first_uses) last = later(last, entries_[r]);
+    if (uses.size() > row.first_uses.size()) [[unlikely]]
+      for (uint16_t r : uses.subspan(row.first_uses.size())) last = later(last, entries_[r]);
+    return {ready_at(last), wait_of(last)};
+  }
   // Does the same when results reach other pipes `crossing` cycles later than their own and guards `guard`
   // cycles later, and when the instruction's own results may come `slack` cycles after those that it waits
   // for.
@@ -83,6 +91,12 @@ class Scoreboard {
   // pipes at the same time.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
     for (uint16_t r : registers) entries_[r] = entry(value, from);
+  }
+  // Does the same for `defs`, the destinations of `row`.
+  void set(const IssueRow& row, std::span<const uint16_t> defs, Ready value, Pipe from) {
+    entries_[row.first_def] = entry(value, from);
+    if (defs.size() > 1) [[unlikely]]
+      set(defs.subspan(1), value, from);
   }
 
  private:

@@ -49,7 +49,7 @@ class WarpSlots {
   void refresh(WarpSlot& at, Cycle now) {
     if (!is_plain_ || at.sequence.is_under_way()) return refresh_in_full(at, now);
     const IssueRow& row = table_.row(at.warp.simt.pc);
-    const Scoreboard::Ready ready = at.scoreboard.ready(table_.uses(row), at.front);
+    const Scoreboard::Ready ready = at.scoreboard.ready(row, table_.uses(row), at.front);
     at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door});
   }
   // Notes that the warp has ended while its last accesses have not.

@@ -60,6 +60,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
   const auto reserve = [&](uint64_t bytes) { return bytes ? world.memory->reserve(bytes) : Address{0}; };
   const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)),
                 constants = reserve(core::CoreCell::constant_bytes(params_.core, world));
+  const auto table = std::make_shared<const core::IssueTable>(*world.image, params_.core);
   for (uint32_t i = 0; i < params_.cores; ++i) {
     const std::string name = fmt::format("core[{}]", i);
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
@@ -84,7 +85,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
                                           .clock_mhz = params_.clock_mhz,
                                           .tables = rt.tables.base,
                                           .places = {code, constants},
-                                          .turn = turn};
+                                          .turn = turn,
+                                          .table = table};
     cores_.push_back(std::make_unique<core::CoreCell>(params_.core, context));
     access_latency_.add(cores_.back()->latencies());
     engine_.add(*cores_.back());
