@@ -103,13 +103,13 @@ void CoreCell::advance(Cycle from, Cycle until) {
   Cycle now = no_skip_ ? from : next_event(from);
   while (now < until && !fault()) {
     step(now++);
-    if (!no_skip_ && warps_.next_alarm() > now) now = next_event(now);
+    if (!no_skip_ && warps_.alarms().next(now) > now) now = next_event(now);
   }
 }
 
 Cycle CoreCell::next_event(Cycle from) const {
   if (fault()) return kNever;
-  Cycle next = warps_.next_alarm();
+  Cycle next = warps_.alarms().next(from);
   if (next <= from) return from;
   if (from == 0) return finished() ? next : from;
   if (code_) next = std::min(next, code_->next_event(from - 1));
@@ -129,13 +129,7 @@ void CoreCell::step(Cycle now) {
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);
   rays_.take_answers(now);
-  // An issue may wake schedulers that come after its own, and these still have their turn in this cycle.
-  for (uint32_t awake = find_awake(now), passed = 0; (awake &= ~passed) != 0 && !fault();) {
-    const auto s = uint32_t(std::countr_zero(awake));
-    issue_.run(warps_.schedulers()[s], now);
-    passed = (2u << s) - 1;
-    awake = find_awake(now);
-  }
+  issue(now);
   active_until_ = now + 1;
   if (warps_.num_resident() != residents_) [[unlikely]] {
     count_residents(now);
@@ -143,17 +137,27 @@ void CoreCell::step(Cycle now) {
   }
 }
 
-// Returns the schedulers that have something to do in cycle `now`, as bits.
-uint32_t CoreCell::find_awake(Cycle now) const {
+// Gives each scheduler that has something to do its turn. An issue may wake schedulers that come later.
+void CoreCell::issue(Cycle now) {
   const Alarms& alarms = warps_.alarms();
-  uint32_t awake = 0;
-  for (uint32_t s = 0; s < params_.schedulers; ++s)
-    awake |= uint32_t{no_skip_ || alarms.sleep_until[s] <= now} << s;
-  for (uint32_t rest = alarms.watching & ~awake; rest; rest &= rest - 1) {
-    const auto s = uint32_t(std::countr_zero(rest));
-    awake |= uint32_t{warps_.schedulers()[s].sees_open_door(doors_)} << s;
+  uint32_t due = no_skip_ ? (1u << params_.schedulers) - 1 : alarms.due(now);
+  if (alarms.watching() & ~due) [[unlikely]]
+    due |= find_open_doors(alarms.watching() & ~due);
+  for (uint32_t left = ~0u; due != 0 && !fault(); due = (due | alarms.awake()) & left) {
+    const auto s = uint32_t(std::countr_zero(due));
+    left = ~0u << s << 1;
+    issue_.run(warps_.schedulers()[s], now);
   }
-  return awake;
+}
+
+// Returns those of the schedulers whose doors may have opened.
+uint32_t CoreCell::find_open_doors(uint32_t watching) const {
+  uint32_t open = 0;
+  for (; watching; watching &= watching - 1) {
+    const auto s = uint32_t(std::countr_zero(watching));
+    open |= uint32_t{warps_.schedulers()[s].sees_open_door(doors_)} << s;
+  }
+  return open;
 }
 
 // Notes that the number of resident warps may be another one from cycle `now` on.

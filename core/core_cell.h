@@ -134,7 +134,8 @@ class CoreCell final : public Cell {
  private:
   void launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now);
   void step(Cycle now);
-  uint32_t find_awake(Cycle now) const;
+  void issue(Cycle now);
+  uint32_t find_open_doors(uint32_t watching) const;
   void count_residents(Cycle now);
   void become_empty(Cycle now);
   CoreParts parts() { return {params_, world_, *table_, executor_, warps_, counts_, observers_}; }

@@ -36,7 +36,7 @@ uint64_t Scheduler::leave_out_full_doors(uint64_t ready, const Doors& doors) {
   watches_rt_ = at(Door::RtUnit) && !doors.rt.can_accept();
   if (watches_rt_) full |= at(Door::RtUnit);
   watches_lsu_ = watches_lsu;
-  if (watches_lsu_ || watches_rt_) alarms_.watching |= 1u << index_;
+  if (watches_lsu_ || watches_rt_) alarms_.watch(index_);
   return ready & ~full;
 }
 
@@ -60,7 +60,7 @@ void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doo
   } else {
     reason_ = Stall::NoWarp;
   }
-  sleep_until() = next;
+  alarms_.sleep(index_, next);
 }
 
 NextIssue Scheduler::next_of(uint32_t warp) const {

@@ -57,12 +57,37 @@ class RegisterBanks {
   std::array<Cycle, kMaxRegisterBanks> port_free_{};  // first cycle in which the bank's port is free
 };
 
-// Holds when the schedulers of a core wake up. The entries lie together because a core looks at all of them
-// in each of its cycles.
-struct Alarms {
-  std::array<Cycle, kMaxSchedulers>
-      sleep_until{};      // by scheduler: nothing happens before, unless a door opens
-  uint32_t watching = 0;  // bit s: scheduler s watches a door
+// Says which schedulers of a core have something to do, and when the others will. It lies together because a
+// core looks at all of it in each of its cycles.
+class Alarms {
+ public:
+  Alarms() { timer_.fill(kNever); }
+  void wake(uint32_t scheduler) { awake_ |= 1u << scheduler; }
+  // Lets the scheduler sleep until `timer`, unless somebody wakes it before.
+  void sleep(uint32_t scheduler, Cycle timer) {
+    awake_ &= ~(1u << scheduler);
+    timer_[scheduler] = timer;
+  }
+  void sleep_less(uint32_t scheduler, Cycle timer) { timer_[scheduler] = std::min(timer_[scheduler], timer); }
+  void watch(uint32_t scheduler) { watching_ |= 1u << scheduler; }
+  void watch_nothing(uint32_t scheduler) { watching_ &= ~(1u << scheduler); }
+
+  // Each bit of these masks stands for a scheduler.
+  uint32_t awake() const { return awake_; }
+  uint32_t watching() const { return watching_; }  // It sleeps, or waits, in front of a full door.
+  uint32_t due(Cycle now) const {                  // It is awake, or its timer has run out.
+    uint32_t due = awake_;
+    for (size_t s = 0; s < timer_.size(); ++s) due |= uint32_t{timer_[s] <= now} << s;
+    return due;
+  }
+  // Returns the first cycle from `now` on in which a scheduler is due.
+  Cycle next(Cycle now) const {
+    return awake_ ? now : std::max(now, *std::min_element(timer_.begin(), timer_.end()));
+  }
+
+ private:
+  uint32_t awake_ = 0, watching_ = 0;
+  std::array<Cycle, kMaxSchedulers> timer_;
 };
 
 // Issues from its warps, which it numbers locally: warp slot w is warp w / schedulers of scheduler w mod
@@ -100,7 +125,7 @@ class Scheduler {
   // sleeps.
   void become_empty() {
     reason_ = Stall::NoWarp;
-    sleep_until() = kNever;
+    alarms_.sleep(index_, kNever);
     watch_nothing();
   }
 
@@ -116,7 +141,7 @@ class Scheduler {
     const uint64_t operands = resident_ & ~operands_.missing();
     const uint64_t piped = leave_out_busy_pipes(operands, now);
     uint64_t ready = piped;
-    if (alarms_.watching >> index_ & 1) [[unlikely]]
+    if (alarms_.watching() >> index_ & 1) [[unlikely]]
       watch_nothing();
     if (ready & ~needs_door_[size_t(Door::None)]) ready = leave_out_full_doors(ready, doors);
     if (!ready || has_banks_) find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
@@ -125,14 +150,14 @@ class Scheduler {
   // Holds back warps of `ready` whose register reads meet those of earlier instructions until `next`.
   void hold_for_banks(Cycle next) {
     reason_ = std::min(reason_, Stall::RegisterBanks);
-    sleep_until() = std::min(sleep_until(), next);
+    alarms_.sleep_less(index_, next);
   }
   // Chooses one warp of `ready`, which is not 0. The cycle is spent on issuing.
   uint32_t pick(uint64_t ready, Cycle now) {
     const uint32_t warp = policy_->pick({ready, {age_.data(), age_.size()}, now});
     GLINT_DCHECK(ready >> warp & 1, "the issue policy chose warp {}, which is not ready", warp);
     reason_ = Stall::Issued;
-    sleep_until() = now + 1;
+    wake();
     return warp;
   }
 
@@ -171,11 +196,10 @@ class Scheduler {
   RegisterBanks banks;
 
  private:
-  Cycle& sleep_until() { return alarms_.sleep_until[index_]; }
-  void wake() { sleep_until() = 0; }
+  void wake() { alarms_.wake(index_); }
   void watch_nothing() {
     watches_rt_ = watches_lsu_ = false;
-    alarms_.watching &= ~(1u << index_);
+    alarms_.watch_nothing(index_);
   }
   void set_wait(uint32_t warp, Stall wait) {
     if (wait_[warp] == wait) return;

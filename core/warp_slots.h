@@ -32,14 +32,6 @@ class WarpSlots {
   bool is_resident(uint32_t slot) const { return slots_[slot].scheduler->is_resident(slots_[slot].local); }
   uint32_t first_free() const;
   const Alarms& alarms() const { return *alarms_; }
-  // Returns the first cycle in which some scheduler has something to do, whatever the doors that it watches
-  // do.
-  Cycle next_alarm() const {
-    Cycle next = kNever;
-    for (size_t s = 0; s < schedulers_.size(); ++s) next = std::min(next, alarms_->sleep_until[s]);
-    return next;
-  }
-
   // Starts the warp in the slot, which the executor has started. It can issue its first instruction at
   // `ready`.
   void start(uint32_t slot, BlockSlot& home, Cycle ready, Cycle now);
