@@ -121,10 +121,12 @@ void CoreCell::step(Cycle now) {
   sampler_.reach(now);
   l1_.tick(now);
   // Choice: the RT unit and the load-store unit alternate in who comes to the L1 first, so that neither
-  // starves the other.
-  if (now & 1) rt_.tick(now);
-  lsu_.tick(now);
-  if (!(now & 1)) rt_.tick(now);
+  // starves the other. The order does not matter while the load-store unit has nothing to do, as is mostly
+  // so.
+  const bool lsu_first = (now & 1) == 0 && lsu_.is_due(now);
+  if (lsu_first) lsu_.tick(now);
+  rt_.tick(now);
+  if (!lsu_first) lsu_.tick(now);
   if (code_) code_->tick(now, warps_, constants_);
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);

@@ -66,8 +66,10 @@ class Lsu {
   void tick(Cycle now) {
     completed_.clear();
     num_accepted_ = 0;
-    if (now >= due_ || l1_.has_answer(now, mem::Client::Lsu)) run(now);
+    if (is_due(now)) run(now);
   }
+  // Returns whether tick() would do anything.
+  bool is_due(Cycle now) const { return now >= due_ || l1_.has_answer(now, mem::Client::Lsu); }
   // Returns whether completed() or accepted() has an access.
   bool has_news() const { return num_accepted_ != 0 || !completed_.empty(); }
   std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }

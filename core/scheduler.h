@@ -179,7 +179,9 @@ class Scheduler {
   void take(Pipe at, Cycle now, Cycle parts) {
     constexpr Cycle kParts = OpTime::kParts;
     Cycle& busy = pipe_busy_[size_t(at)];
-    busy = (pipe_free_[size_t(at)] == now ? busy : now * kParts) + parts;
+    // This is a choice without a branch, because it cannot be foreseen.
+    const Cycle idle = now * kParts, was_busy = Cycle{0} - Cycle{pipe_free_[size_t(at)] == now};
+    busy = idle - ((idle - busy) & was_busy) + parts;
     pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts;
   }
 
@@ -202,7 +204,6 @@ class Scheduler {
     alarms_.watch_nothing(index_);
   }
   void set_wait(uint32_t warp, Stall wait) {
-    if (wait_[warp] == wait) return;
     waits_[size_t(wait_[warp])] &= ~(uint64_t{1} << warp);
     waits_[size_t(wait)] |= uint64_t{1} << warp;
     wait_[warp] = wait;
