@@ -11,6 +11,7 @@
 
 #include "base/check.h"
 #include "base/types.h"
+#include "core/alarms.h"
 #include "core/issue_scheduler.h"
 #include "core/issue_table.h"
 #include "core/lsu.h"
@@ -55,39 +56,6 @@ class RegisterBanks {
 
  private:
   std::array<Cycle, kMaxRegisterBanks> port_free_{};  // first cycle in which the bank's port is free
-};
-
-// Says which schedulers of a core have something to do, and when the others will. It lies together because a
-// core looks at all of it in each of its cycles.
-class Alarms {
- public:
-  Alarms() { timer_.fill(kNever); }
-  void wake(uint32_t scheduler) { awake_ |= 1u << scheduler; }
-  // Lets the scheduler sleep until `timer`, unless somebody wakes it before.
-  void sleep(uint32_t scheduler, Cycle timer) {
-    awake_ &= ~(1u << scheduler);
-    timer_[scheduler] = timer;
-  }
-  void sleep_less(uint32_t scheduler, Cycle timer) { timer_[scheduler] = std::min(timer_[scheduler], timer); }
-  void watch(uint32_t scheduler) { watching_ |= 1u << scheduler; }
-  void watch_nothing(uint32_t scheduler) { watching_ &= ~(1u << scheduler); }
-
-  // Each bit of these masks stands for a scheduler.
-  uint32_t awake() const { return awake_; }
-  uint32_t watching() const { return watching_; }  // It sleeps, or waits, in front of a full door.
-  uint32_t due(Cycle now) const {                  // It is awake, or its timer has run out.
-    uint32_t due = awake_;
-    for (size_t s = 0; s < timer_.size(); ++s) due |= uint32_t{timer_[s] <= now} << s;
-    return due;
-  }
-  // Returns the first cycle from `now` on in which a scheduler is due.
-  Cycle next(Cycle now) const {
-    return awake_ ? now : std::max(now, *std::min_element(timer_.begin(), timer_.end()));
-  }
-
- private:
-  uint32_t awake_ = 0, watching_ = 0;
-  std::array<Cycle, kMaxSchedulers> timer_;
 };
 
 // Issues from its warps, which it numbers locally: warp slot w is warp w / schedulers of scheduler w mod

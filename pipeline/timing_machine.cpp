@@ -129,7 +129,7 @@ Cycle TimingMachine::run(const LaunchWatch& watch) {
           // A launch whose warps have all ended only waits for its last writes.
           if (progress_.ended_warps < progress_.num_warps) {
             end_ = end;
-            if (const auto line = busiest_line()) progress_.where = line->to_string(*world_.image);
+            if (const auto busiest = busiest_line()) progress_.where = busiest->to_string(*world_.image);
             return EngineLoop::Next::Stop;
           }
         }
