@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -34,9 +35,36 @@ inline uint32_t rows_of(const isa::Memory& shape) {
 inline uint32_t row_bytes(const isa::Memory& shape) {
   return shape.bytes == 8 ? 4u : shape.bytes;
 }
+// Returns the register that a part of a load fills, from the bytes of the part.
+inline uint32_t part_of(const std::byte* from, const isa::Memory& shape) {
+  if (row_bytes(shape) != 4) return narrow(from, shape);
+  uint32_t value = 0;
+  std::memcpy(&value, from, 4);
+  return value;
+}
 // Returns the register row of row `row`: a pair for 64-bit values, any registers for vectors.
 inline isa::Slot slot_of(const isa::Inst& inst, const isa::Memory& shape, size_t first, uint32_t row) {
   return shape.bytes == 8 ? isa::Slot(inst.operand[first] + row) : inst.operand[first + row];
+}
+
+// Returns whether all of `lanes`, of which there is one at least, have one address. That is so in most
+// accesses to local memory and to the constant bank.
+inline bool is_uniform(const isa::Access& access, LaneMask lanes) {
+  const Address first = access.address[size_t(std::countr_zero(lanes))];
+  Address differ = 0;
+  if (lanes == kAllLanes)
+    for (const Address address : access.address) differ |= address ^ first;
+  else
+    for_each_lane(lanes, [&](int lane) { differ |= access.address[size_t(lane)] ^ first; });
+  return differ == 0;
+}
+
+// Copies the words of `lanes` from one row to another.
+inline void copy_lanes(uint32_t* to, const uint32_t* from, LaneMask lanes) {
+  if (lanes == kAllLanes)
+    std::memcpy(to, from, sizeof(uint32_t) * size_t(kLanes));
+  else
+    for_each_lane(lanes, [&](int lane) { to[lane] = from[lane]; });
 }
 
 template <class Byte>  // Byte may be const.

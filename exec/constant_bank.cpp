@@ -19,6 +19,17 @@ bool ConstantBank::load(WarpContext& warp, const isa::Inst& inst, const isa::OpR
   const isa::Memory& shape = row.memory;
   const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
   const uint64_t offset = space == Space::Param ? isa::kPushConstantOffset : 0;
+  if (is_uniform(warp.regs.access, lanes)) {
+    const Address common = warp.regs.access.address[size_t(std::countr_zero(lanes))] + offset;
+    if (common + bytes <= world_.constant_bank.size() && (common & (bytes - 1)) == 0) [[likely]] {
+      for (uint32_t r = 0; r < rows_of(shape); ++r) {
+        const uint32_t value = part_of(world_.constant_bank.data() + common + r * part, shape);
+        uint32_t* const to = warp.regs.write(slot_of(inst, shape, kLoadFirst, r));
+        for_each_lane(lanes, [&](int lane) { to[lane] = value; });
+      }
+      return true;
+    }
+  }
   for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     Address address = warp.regs.access.address[size_t(lane)] + offset;
@@ -42,11 +53,7 @@ bool ConstantBank::load(WarpContext& warp, const isa::Inst& inst, const isa::OpR
     }
     const std::byte* const from = world_.constant_bank.data() + address;
     for (uint32_t r = 0; r < rows_of(shape); ++r) {
-      uint32_t* const to = warp.regs.write(slot_of(inst, shape, kLoadFirst, r)) + lane;
-      if (part == 4)
-        std::memcpy(to, from + r * 4, 4);
-      else
-        *to = narrow(from + r * part, shape);
+      warp.regs.write(slot_of(inst, shape, kLoadFirst, r))[lane] = part_of(from + r * part, shape);
     }
   }
   return true;

@@ -45,6 +45,19 @@ bool LocalMemory::check(WarpContext& warp, const isa::OpRow& row, LaneMask& lane
   return true;
 }
 
+// Runs an access of whole words at one address of every lane's stack: each word is one row of the stack.
+void LocalMemory::move_rows(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Address address,
+                            LaneMask lanes) {
+  const isa::Memory& shape = row.memory;
+  uint32_t* stack = warp.local.data() + address / 4 * kLanes;
+  for (uint32_t r = 0; r < rows_of(shape); ++r, stack += kLanes) {
+    if (row.effect == Effect::Store)
+      copy_lanes(stack, warp.regs.read(slot_of(inst, shape, kStoreFirst, r)), lanes);
+    else
+      copy_lanes(warp.regs.write(slot_of(inst, shape, kLoadFirst, r)), stack, lanes);
+  }
+}
+
 // Runs a load or store. Local memory lies word by word, with all lanes of a word together, so a vector may
 // start at any word, as spills do.
 bool LocalMemory::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask& made) {
@@ -52,6 +65,11 @@ bool LocalMemory::access(WarpContext& warp, const isa::Inst& inst, const isa::Op
   const isa::Memory& shape = row.memory;
   const uint32_t bytes = shape.bytes * shape.count, part = row_bytes(shape);
   const Address* const address = warp.regs.access.address.data();
+  if (part == 4 && is_uniform(warp.regs.access, lanes)) {
+    const Address common = address[std::countr_zero(lanes)];
+    if (common % part == 0 && common + bytes <= world_.local_bytes) [[likely]]
+      return move_rows(warp, inst, row, common, lanes), true;
+  }
   bool all_inside = true;
   for_each_lane(lanes, [&](int lane) {
     all_inside &= address[lane] % part == 0 && address[lane] + bytes <= world_.local_bytes;

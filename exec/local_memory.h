@@ -17,6 +17,8 @@ class LocalMemory {
   bool access(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask& made);
 
  private:
+  static void move_rows(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Address address,
+                        LaneMask lanes);
   bool check(WarpContext& warp, const isa::OpRow& row, LaneMask& lanes);
 
   const World& world_;
