@@ -1,6 +1,7 @@
 // Tests when the schedulers of a core are due.
 // SPDX-License-Identifier: Apache-2.0
 #include "core/alarms.h"
+
 #include "tests/support/catch.h"
 
 using namespace glint;
