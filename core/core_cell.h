@@ -46,8 +46,8 @@ class CoreCell final : public Cell {
     Address tables = 0;  // physical address of the candidates of the core's rays, with table_bytes() bytes
     CodePlaces places;   // used when the caches of instructions or constants are not perfect
     Cycle turn = 0;      // cycles after which other cores see what this one wrote; 0: there are no others
-    std::shared_ptr<const IssueTable>
-        table;  // of the program and the parameters; null: the core makes its own
+    // It belongs to the program and the parameters, and cores share it. null: the core makes its own.
+    std::shared_ptr<const IssueTable> table = nullptr;
   };
   // The program and the parameters must have passed check().
   CoreCell(const Params& params, const Context& context);

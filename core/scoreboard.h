@@ -84,7 +84,7 @@ class Scoreboard {
   void read(std::span<const uint16_t> registers, Cycle end) {
     for (uint16_t r : registers) {
       --reads_[r].readers;
-      reads_[r].until = std::max<Cycle>(reads_[r].until, end);
+      reads_[r].until = std::max(reads_[r].until, end);
     }
   }
   // Sets the ready time. `from` is the pipe whose result it is. Count stands for a result that reaches all
@@ -132,10 +132,9 @@ class Scoreboard {
 
   // Says who reads a register that another instruction is about to overwrite.
   struct Reads {
-    uint64_t until : 48 = 0;    // It is read until then.
-    uint64_t readers : 16 = 0;  // memory instructions that have not read the register yet
+    Cycle until = 0;       // It is read until then.
+    uint32_t readers = 0;  // memory instructions that have not read the register yet
   };
-  static_assert(sizeof(Reads) == 8);
 
   std::array<Entry, kScoreboardEntries> entries_{};
   std::array<Reads, kScoreboardEntries> reads_{};
