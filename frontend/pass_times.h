@@ -14,7 +14,9 @@
 namespace glint::frontend {
 
 struct PassTime {
-  std::string stage;   // glslang, validation, optimiser, lowering or backend
+  // This is glslang or reading, which include the validation of what they give; optimiser, validation (of
+  // what the optimiser gives), lowering or backend.
+  std::string stage;
   std::string pass;    // a part of the stage; empty for a stage without parts
   double seconds = 0;  // processor time of the process
 };
