@@ -11,8 +11,8 @@
 
 namespace glint::core {
 
-// Says which schedulers of a core have something to do, and when the others will. It lies together because a
-// core looks at all of it in each of its cycles.
+// Says which schedulers of a core have something to do, and when the others will. The state of all schedulers
+// lies together because a core looks at all of it in each of its cycles.
 class Alarms {
  public:
   Alarms() { timer_.fill(kNever); }
@@ -22,14 +22,16 @@ class Alarms {
     awake_ &= ~(1u << scheduler);
     timer_[scheduler] = timer;
   }
+  // Brings the scheduler's timer forward to `timer`, if that is earlier.
   void sleep_less(uint32_t scheduler, Cycle timer) { timer_[scheduler] = std::min(timer_[scheduler], timer); }
   void watch(uint32_t scheduler) { watching_ |= 1u << scheduler; }
   void watch_nothing(uint32_t scheduler) { watching_ &= ~(1u << scheduler); }
 
-  // Each bit of these masks stands for a scheduler.
+  // These return schedulers as the bits of a mask: those that are awake, those that watch a full door, and
+  // those that are awake or whose timer has run out.
   uint32_t awake() const { return awake_; }
-  uint32_t watching() const { return watching_; }  // It sleeps, or waits, in front of a full door.
-  uint32_t due(Cycle now) const {                  // It is awake, or its timer has run out.
+  uint32_t watching() const { return watching_; }
+  uint32_t due(Cycle now) const {
     uint32_t due = awake_;
     for (size_t s = 0; s < timer_.size(); ++s) due |= uint32_t{timer_[s] <= now} << s;
     return due;

@@ -121,8 +121,8 @@ void CoreCell::step(Cycle now) {
   sampler_.reach(now);
   l1_.tick(now);
   // Choice: the RT unit and the load-store unit alternate in who comes to the L1 first, so that neither
-  // starves the other. The order does not matter while the load-store unit has nothing to do, as is mostly
-  // so.
+  // starves the other. The order does not matter while the load-store unit has nothing to do, which is
+  // mostly the case.
   const bool lsu_first = (now & 1) == 0 && lsu_.is_due(now);
   if (lsu_first) lsu_.tick(now);
   rt_.tick(now);

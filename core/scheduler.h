@@ -147,7 +147,7 @@ class Scheduler {
   void take(Pipe at, Cycle now, Cycle parts) {
     constexpr Cycle kParts = OpTime::kParts;
     Cycle& busy = pipe_busy_[size_t(at)];
-    // This is a choice without a branch, because it cannot be foreseen.
+    // There is no branch, because whether the pipe was busy until now cannot be foreseen.
     const Cycle idle = now * kParts, was_busy = Cycle{0} - Cycle{pipe_free_[size_t(at)] == now};
     busy = idle - ((idle - busy) & was_busy) + parts;
     pipe_free_[size_t(at)] = (busy + kParts - 1) / kParts;

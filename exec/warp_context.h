@@ -48,14 +48,14 @@ struct HitObject {
   uint32_t time = 0;  // bits of a float
 };
 
-// What every instruction touches comes first and lies together.
+// Holds the state of a warp. The members that every instruction touches come first and lie together.
 struct WarpContext {
   isa::Warp regs;
   SimtStack simt;
   uint64_t instructions = 0;      // instructions retired since the start, for the instruction budget
   bool waiting_for_rays = false;  // An rt.trace or rt.resume has not been finished.
-  bool waiting_at_barrier =
-      false;                // It executes nothing until another warp of the block has opened the barrier.
+  // The warp executes nothing until another warp of the block has opened the barrier.
+  bool waiting_at_barrier = false;
   uint32_t warp_index = 0;  // number in the launch, in the order of World::layout
   Block* block = nullptr;   // the block that the warp belongs to
   uint32_t warp_in_block = 0;

@@ -13,7 +13,8 @@
 namespace glint::frontend::test {
 namespace {
 
-// Returns code with `values` words that are all live at once.
+// Returns code with `values` words that are all live at once. The first word is needed first, so that all
+// live equally long and many are left when some are spilled.
 VirtualProgram crowd(int values) {
   CodeBuilder code;
   const Operand address = code.pair();
