@@ -17,7 +17,7 @@ enum class Client : uint8_t { Lsu, RtUnit, Code, Count };
 //  - access() takes a request or refuses it, because a port, a bank, the MSHRs or a queue are full in this
 //    cycle. A refused request changes nothing and may be tried again in a later cycle.
 //  - Every accepted read gives its token back exactly once: a hit after exactly the hit latency, any other
-//    read when its last sector has arrived. Writes give nothing back.
+//    read when its last sector has arrived. Writes and prefetches give nothing back.
 //  - Reads of instructions and constants take no port and no bank, and their lines are not kept.
 //  - The tokens of one client come back in the order in which they are ready; of tokens ready in the same
 //    cycle, the one that was accepted first comes first.

@@ -78,13 +78,13 @@ void MemorySystem::check_drained() const {
 // Checks that what left one level arrived at the next, and that nothing was counted twice or lost.
 void MemorySystem::check_conserved() const {
   uint64_t sent = 0, received = 0;         // bytes that L1s have counted, less those that slices have
-  uint64_t timed = load_latency_.total();  // reads that were timed, less those that L1s took
+  uint64_t timed = load_latency_.total();  // reads that were timed, less those that L1s owed an answer
   for (const auto& l1 : l1s_) {
     const L1Stats& s = l1->stats();
     GLINT_CHECK_EQ(s.reads.total(), s.hits.total() + s.pending_hits.total() + s.misses.total());
     sent += s.request_bytes.value();
     received += s.reply_bytes.value();
-    timed -= s.reads.total();
+    timed -= s.reads.total() - s.reads.count(Traffic::RtPrefetch);
   }
   for (const auto& partition : partitions_) {
     uint64_t fetched = 0, written = 0;

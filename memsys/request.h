@@ -25,15 +25,16 @@ enum class Traffic : uint8_t {
   RtInstance,
   RtTriangle,
   RtProcedural,
-  RtTable,  // is for tables of candidates that wait for their shaders
-  RtStack,  // is for the stacks of rays
+  RtTable,     // is for tables of candidates that wait for their shaders
+  RtStack,     // is for the stacks of rays
+  RtPrefetch,  // reads ahead of the rays; nobody waits for the answer, and none comes back
   Count
 };
 constexpr std::string_view name_of(Traffic t) {
   constexpr std::string_view kNames[] = {
       "shader_global", "shader_local",  "shader_texture", "shader_surface", "shader_binding",
       "shader_atomic", "instruction",   "constant",       "rt_node",        "rt_instance",
-      "rt_triangle",   "rt_procedural", "rt_table",       "rt_stack"};
+      "rt_triangle",   "rt_procedural", "rt_table",       "rt_stack",       "rt_prefetch"};
   static_assert(std::size(kNames) == size_t(Traffic::Count));
   return kNames[size_t(t)];
 }
@@ -89,7 +90,9 @@ struct Request {
   uint8_t sectors = 0;  // bit i says that sector i of the line is wanted or written
   bool write = false;
   Traffic traffic = Traffic::ShaderGlobal;
-  Token token = 0;             // comes back once when a read has all sectors; writes have no answer
+  // It comes back once when a read has all sectors. Writes and prefetches (Traffic::RtPrefetch) have no
+  // answer.
+  Token token = 0;
   WordMask words = kAllWords;  // words of the line that a write covers
   // An atomic (Traffic::ShaderAtomic) is a "read" whose token comes back when the L2 has changed the sectors,
   // or a "write" that has no answer.

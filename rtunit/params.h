@@ -11,6 +11,7 @@
 #include "rtunit/any_hit_mode.h"
 #include "rtunit/child_order.h"
 #include "rtunit/coalescer.h"
+#include "rtunit/prefetcher.h"
 #include "rtunit/ray_scheduler.h"
 #include "rtunit/shortcuts/shortcuts.h"
 #include "rtunit/stack_model.h"
@@ -61,6 +62,9 @@ struct Params {
   PolicyChoice<ChildOrder> child_order{"near_first"};
   PolicyChoice<Coalescer> coalescing{"within_warp"};
   PolicyChoice<StackModel> stack{"short_stack"};
+  PolicyChoice<Prefetcher> prefetch{"none"};
+  uint32_t prefetch_queue =
+      512;  // Choice: 16 entries for each lane of a warp; the published one has no bound
   Shortcuts shortcuts;
   static ParamList params() {
     return {
@@ -106,6 +110,9 @@ struct Params {
         policy(&Params::coalescing, "coalescing",
                "Selects which lanes that want the same node share its fetch."),
         policy(&Params::stack, "stack", "Selects where a ray keeps the nodes that it still has to visit."),
+        policy(&Params::prefetch, "prefetch", "Selects which nodes are read before a ray asks for them."),
+        param(&Params::prefetch_queue, "prefetch_queue", "sector",
+              "Largest number of sectors that wait to be read ahead.", 1, 65536),
         section(
             &Params::shortcuts, "shortcuts",
             "Switches that make the unit behave as Vulkan-Sim does and hardware does not, for comparisons.")};

@@ -25,6 +25,7 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, C
       tags_(cache_shape(params_.size, params_.ways, line_bytes_), params_.replacement),
       mshr_(params_.mshr_entries, params_.mshr_merges),
       passing_(params_.mshr_entries),
+      prefetched_(tags_.num_lines(), params_.mshr_entries, stats_.prefetch),
       seen_(line_bytes_),
       miss_queue_(params_.miss_queue) {
 }
@@ -54,10 +55,13 @@ bool L1Cache::access(Cycle now, Client client, const Request& request) {
   return true;
 }
 
+// Choice: a prefetch that finds its line leaves the order of replacement as it is.
 inline void L1Cache::count_read(const Request& request, uint32_t slot, uint8_t missing, uint8_t fetched) {
-  if (slot != kNone) tags_.touch(slot);
-  ++order_;
-  ++reads_accepted_;
+  if (request.traffic != Traffic::RtPrefetch) {
+    if (slot != kNone) tags_.touch(slot);
+    ++order_;
+    ++reads_accepted_;
+  }
   stats_.count_read(request.traffic, missing, fetched, request.line, seen_);
 }
 
@@ -66,9 +70,12 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
   const uint8_t missing =
       slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
   if (missing) return miss(now, client, request, slot, missing);
-  Answers& answers = answers_[size_t(client)];
-  answers.push(answers.hits, {now + params_.hit_latency, order_, request.token});
-  latencies_.add(request.traffic, params_.hit_latency);
+  if (request.traffic != Traffic::RtPrefetch) {
+    Answers& answers = answers_[size_t(client)];
+    answers.push(answers.hits, {now + params_.hit_latency, order_, request.token});
+    latencies_.add(request.traffic, params_.hit_latency);
+    prefetched_.used(slot, request.sectors);
+  }
   count_read(request, slot, 0, 0);
   return true;
 }
@@ -77,7 +84,8 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
 bool L1Cache::miss(Cycle now, Client client, const Request& request, uint32_t slot, uint8_t missing) {
   uint32_t entry = mshr_.find(request.line);
   if (entry == kNone && mshr_.full()) return refuse(Refusal::MshrFull);
-  if (entry != kNone && mshr_.merge_limit(entry)) return refuse(Refusal::MergeLimit);
+  const bool has_waiter = request.traffic != Traffic::RtPrefetch;
+  if (entry != kNone && has_waiter && mshr_.merge_limit(entry)) return refuse(Refusal::MergeLimit);
   const uint8_t fetched = entry == kNone ? missing : uint8_t(missing & ~mshr_.pending(entry));
   if (fetched && queue_full()) return refuse(Refusal::QueueFull);
   if (allocate_on_miss_ && !passes_l1(request.traffic)) {
@@ -92,14 +100,20 @@ bool L1Cache::miss(Cycle now, Client client, const Request& request, uint32_t sl
   }
   passing_[entry] &= uint8_t{passes_l1(request.traffic)};
   mshr_.expect(entry, fetched);
-  mshr_.add(entry, {now, order_, request.token, missing, client, request.traffic});
+  if (has_waiter) {
+    mshr_.add(entry, {now, order_, request.token, missing, client, request.traffic});
+    if (slot != kNone) prefetched_.used(slot, uint8_t(request.sectors & ~missing));
+    prefetched_.awaited(entry, missing);
+  } else {
+    prefetched_.sent(entry, fetched);
+  }
   if (fetched) {
     queue_packet(now + params_.miss_latency,
                  {.line = request.line, .sectors = fetched, .traffic = request.traffic});
     sectors_requested_ += num_sectors(fetched);
   }
   count_read(request, slot, missing, fetched);
-  if (fetched) read_missed_.fire([&] { return ReadMissed{client, request}; });
+  if (fetched && has_waiter) read_missed_.fire([&] { return ReadMissed{client, request}; });
   return true;
 }
 
@@ -121,7 +135,10 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
   if (slot != kNone) {
     tags_.touch(slot);
     stats_.write_hits.add(request.traffic);
-    if (params_.write_evict) tags_.drop(slot, request.sectors);
+    if (params_.write_evict) {
+      tags_.drop(slot, request.sectors);
+      prefetched_.forget(slot, request.sectors);
+    }
   }
   if (allocates)
     tags_.insert(request.line).valid = covered;
@@ -140,7 +157,10 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
 bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
   if (queue_full()) return refuse(Refusal::QueueFull);
   const uint32_t slot = tags_.find(request.line);
-  if (slot != kNone) tags_.drop(slot, request.sectors);
+  if (slot != kNone) {
+    tags_.drop(slot, request.sectors);
+    prefetched_.forget(slot, request.sectors);
+  }
   queue_packet(now + params_.miss_latency, {.line = request.line,
                                             .sectors = request.sectors,
                                             .write = request.write,
@@ -193,6 +213,7 @@ void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
 }
 
 void L1Cache::evict(Cycle now, const TagArray::Line& victim) {
+  prefetched_.forget(tags_.slot_of(victim), victim.valid);
   if (!victim.used()) return;
   ++stats_.evictions;
   if (!victim.dirty) return;
@@ -281,13 +302,17 @@ bool L1Cache::fill(Cycle now) {
 bool L1Cache::install(Cycle now, const Reply& reply) {
   const uint32_t slot = tags_.find(reply.line);
   if (slot == kNone) {
-    if (!tags_.has_victim(reply.line)) return true;  // all lines are held for others: the data are not kept
+    if (!tags_.has_victim(reply.line)) {  // all lines are held for others: the data are not kept
+      prefetched_.lost(mshr_.find(reply.line), reply.sectors);
+      return true;
+    }
     const TagArray::Line& victim = tags_.victim(reply.line);
     if (victim.dirty && queue_full()) return false;
     evict(now, victim);
   }
   TagArray::Line& line = slot == kNone ? tags_.insert(reply.line) : tags_.line(slot);
   line.valid |= reply.sectors;
+  prefetched_.arrived(mshr_.find(reply.line), tags_.slot_of(line), reply.sectors);
   line.held = allocate_on_miss_ && (mshr_.pending(mshr_.find(reply.line)) & ~reply.sectors);
   return true;
 }

@@ -14,6 +14,7 @@
 #include "memsys/address_map.h"
 #include "memsys/cache/cache_stats.h"
 #include "memsys/cache/mshr.h"
+#include "memsys/cache/prefetch_marks.h"
 #include "memsys/cache/tag_array.h"
 #include "memsys/l1_port.h"
 #include "memsys/latency.h"
@@ -57,6 +58,7 @@ struct L1Stats : CacheStats {
       miss_cycles, timed_misses,        "Mean cycles from a read that did not hit to its last sector."};
   stats::Breakdown<Stage> miss_stages{&group, "miss_stages", "cycle",
                                       "Sum of the latencies that `miss_latency` counts, by stage."};
+  PrefetchStats prefetch{&group};
 };
 
 // Tells that the L1 has taken a read that counts as a miss.
@@ -174,6 +176,7 @@ class L1Cache final : public L1Port {
   Mshr<Waiter> mshr_;
   // Tells for each MSHR whether its line passes the cache and is not kept (instructions, constants).
   std::vector<uint8_t> passing_;
+  PrefetchMarks prefetched_;
   LineSet seen_;
   Ring<Outgoing> miss_queue_;
   std::array<Answers, size_t(Client::Count)> answers_;

@@ -35,6 +35,7 @@ class TagArray {
   Line& line(uint32_t slot) { return lines_[slot]; }
   const Line& line(uint32_t slot) const { return lines_[slot]; }
 
+  uint32_t num_lines() const { return uint32_t(lines_.size()); }
   uint32_t slot_of(const Line& line) const { return uint32_t(&line - lines_.data()); }
 
   // Returns the line that insert(address) would replace. There may be none where lines are held; has_victim()

@@ -26,7 +26,7 @@ SplitReads::SplitReads(const Shortcuts& shortcuts, const mem::AddressSpace& memo
       lanes_(buffer.size()) {
 }
 
-void SplitReads::entered(uint32_t slot, int lane) {
+void SplitReads::entered(uint32_t slot, int lane, Cycle) {
   const LaneMask bit = LaneMask{1} << lane;
   Lanes& lanes = lanes_[slot];
   lanes.described &= ~bit;
@@ -69,7 +69,7 @@ void SplitReads::errand_started(uint32_t slot, int lane) {
 void SplitReads::visited(const Visit& visit) {
   const LaneMask bit = LaneMask{1} << visit.lane;
   lanes_[visit.slot].described &= ~bit;
-  const bool has_entered = visit.kind == NodeKind::Instance && visit.ray.bottom_stack_base >= 0;
+  const bool has_entered = visit.node.kind == NodeKind::Instance && visit.ray.bottom_stack_base >= 0;
   if (has_entered && shortcuts_.fetch_headers) lanes_[visit.slot].header |= bit;
 }
 

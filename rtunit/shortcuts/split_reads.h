@@ -19,7 +19,7 @@ class SplitReads final : public WalkHook {
   SplitReads(const Shortcuts& shortcuts, const mem::AddressSpace& memory, WarpBuffer& buffer,
              TestPipelines& pipelines, RtStats& stats);
 
-  void entered(uint32_t slot, int lane) override;
+  void entered(uint32_t slot, int lane, Cycle now) override;
   bool detour(uint32_t slot, int lane) override;
   void errand_started(uint32_t slot, int lane) override;
   void visited(const Visit& visit) override;

@@ -24,6 +24,16 @@ inline Fetch next_fetch(const RayState& state) {
   return {state.base + Address(block_of(ref)) * kBlockBytes, bytes, kind};
 }
 
+// Returns the node that an entry of the ray's stack stands for. Entries below bottom_stack_base lie in the
+// top-level structure.
+inline Fetch fetch_of_entry(const RayState& state, size_t entry) {
+  const NodeRef ref = state.stack[entry].node;
+  const NodeKind kind = kind_of(ref);
+  const Address base = int(entry) < state.bottom_stack_base ? state.ray.structure : state.base;
+  const uint32_t bytes = kind == NodeKind::Internal ? state.node_bytes : leaf_bytes(kind);
+  return {base + Address(block_of(ref)) * kBlockBytes, bytes, kind};
+}
+
 // Visits the node of next_fetch(). Afterwards the ray is Traversing, Done, Gathered or needs a shader.
 void step(RayState& state, const std::byte* bytes);
 

@@ -130,6 +130,7 @@ bool FetchQueue::send(Cycle now) {
   ++stats_.requests;
   stats_.sectors += num_sectors_;
   ReadInFlight& read = reads_[sending_];
+  if (listener_) listener_->demanded(read.read.what.address + read.sent, num_bytes_, now);
   ++read.unanswered;
   read.sent += num_bytes_;
   if (read.sent == read.read.what.bytes)

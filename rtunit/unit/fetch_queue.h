@@ -29,10 +29,21 @@ struct ReadInFlight {
   bool is_complete() const { return unanswered == 0 && sent >= read.what.bytes; }
 };
 
+// Is told of the requests that rays need.
+class DemandListener {
+ public:
+  virtual ~DemandListener() = default;
+  // Tells that the L1 has taken a request for `bytes` from the virtual address on.
+  virtual void demanded(Address from, uint32_t bytes, Cycle now) = 0;
+};
+
 class FetchQueue final : public RequestSource {
  public:
   FetchQueue(const Params& params, const mem::AddressSpace& memory, mem::L1Port& l1, WarpBuffer& buffer,
              RtStats& stats);
+
+  // Sets who is told of each request. At most one part is.
+  void set_listener(DemandListener& listener) { listener_ = &listener; }
 
   // Takes a node that some lane wants, for all lanes that share the read. Returns false when no lane wants
   // one or no entry is free.
@@ -90,6 +101,7 @@ class FetchQueue final : public RequestSource {
   mem::L1Port& l1_;
   WarpBuffer& buffer_;
   RtStats& stats_;
+  DemandListener* listener_ = nullptr;
   const std::unique_ptr<RayScheduler> scheduler_;
   const std::unique_ptr<Coalescer> coalescer_;
   std::vector<WarpView> views_;      // by slot; has_ready_warp() keeps them up to date

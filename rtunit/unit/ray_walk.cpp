@@ -36,7 +36,7 @@ void RayWalk::start(uint32_t slot, int lane, Cycle now) {
   }
   ray.rules.retest = retest_;
   ray.rules.order = child_order_->for_rays();
-  for (WalkHook* hook : hooks_) hook->entered(slot, lane);
+  for (WalkHook* hook : hooks_) hook->entered(slot, lane, now);
   go_on(slot, lane, now);
 }
 
@@ -74,13 +74,17 @@ void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
   RayState& ray = buffer_[slot].ray_of(lane);
   node_visited_.fire([&] { return NodeVisited{now, buffer_[slot].warp_slot, lane, node}; });
   const uint32_t boxes = ray.box_tests, triangles = ray.triangle_tests, hits = ray.hits_in_interval;
+  const int before = ray.stack_size;
   if (!retest_ && ray.stack[size_t(ray.stack_size) - 1].t_enter > ray.committed.t) ++stats_.stale_nodes;
   step(ray, memory_.find(node.address, node.bytes));
   stats_.box_tests += ray.box_tests - boxes;
   stats_.triangle_tests += ray.triangle_tests - triangles;
   ++stats_.nodes;
   ++*nodes_of_kind_[size_t(node.kind)];
-  for (WalkHook* hook : hooks_) hook->visited({slot, lane, ray, node.kind, ray.hits_in_interval - hits});
+  // The step takes the node off the stack. What it pushes is never behind the ray's hit, so it stays there.
+  const auto pushed = uint32_t(std::max(ray.stack_size - before + 1, 0));
+  for (WalkHook* hook : hooks_)
+    hook->visited({now, slot, lane, ray, node, ray.hits_in_interval - hits, pushed});
 }
 
 // A shader that gets the ray may end its walk, so the ray is counted now. start() takes the count back when

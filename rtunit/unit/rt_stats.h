@@ -14,6 +14,7 @@ namespace glint::rt {
 enum class Stall : uint8_t {
   NodeRequest,    // The unit sent a request to the L1.
   L1Refused,      // It had a request, and the L1 did not take it.
+  Prefetch,       // It sent a prefetch, because it had nothing else to send.
   MshrFull,       // A lane wants to read, and no entry is free.
   TestBusy,       // A node waits for a test pipeline.
   WaitingMemory,  // Nodes are on their way.
@@ -23,8 +24,9 @@ enum class Stall : uint8_t {
   Count
 };
 constexpr std::string_view name_of(Stall s) {
-  constexpr std::string_view kNames[] = {"node_request",   "l1_refused",   "mshr_full", "test_busy",
-                                         "waiting_memory", "test_latency", "handover",  "idle"};
+  constexpr std::string_view kNames[] = {"node_request", "l1_refused", "prefetch",
+                                         "mshr_full",    "test_busy",  "waiting_memory",
+                                         "test_latency", "handover",   "idle"};
   static_assert(std::size(kNames) == size_t(Stall::Count));
   return kNames[size_t(s)];
 }

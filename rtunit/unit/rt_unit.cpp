@@ -52,6 +52,10 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
     add<SplitReads>(shortcuts, context.memory, buffer_, pipelines_, stats_);
   if (params.result_store) add<ResultWriter>(context.l1, buffer_, stats_, context.results);
   if (has_tables && !shortcuts.store_each_hit) add<TableWriter>(context.l1, buffer_, stats_, context.tables);
+  if (params.prefetch.name != Prefetcher::kNone) {
+    prefetches_ = &add<PrefetchSender>(params, context.memory, context.l1, buffer_, stats_);
+    fetches_.set_listener(*prefetches_);
+  }
   if (shortcuts.same_cycle_hits)
     after_requests_.push_back([this](Cycle now) {
       receive(now);
@@ -110,7 +114,8 @@ Stall RtUnit::send_requests(Cycle now) {
     }
     sent = true;
   }
-  return sent ? Stall::NodeRequest : idle_reason();
+  if (sent) return Stall::NodeRequest;
+  return prefetches_ && prefetches_->send(now) ? Stall::Prefetch : idle_reason();
 }
 
 // A node whose reading has begun is read to its end. Then writers come before new nodes, so that a finished
@@ -126,6 +131,7 @@ Cycle RtUnit::find_due(Cycle now) const {
   if (buffer_.has_leaving_warps()) return now + 1;
   Cycle next = std::min(fetches_.next_event(now), pipelines_.next_event());
   for (const RequestSource* source : sources_) next = std::min(next, source->next_event(now));
+  if (prefetches_) next = std::min(next, prefetches_->next_event(now));
   return next == kNever ? next : std::max(next, now + 1);
 }
 

@@ -16,6 +16,7 @@
 #include "rtunit/rt_port.h"
 #include "rtunit/unit/cycle_account.h"
 #include "rtunit/unit/fetch_queue.h"
+#include "rtunit/unit/prefetch_sender.h"
 #include "rtunit/unit/ray_walk.h"
 #include "rtunit/unit/request_source.h"
 #include "rtunit/unit/rt_stats.h"
@@ -101,6 +102,7 @@ class RtUnit final : public RtPort {
   CycleAccount account_;
   std::vector<std::shared_ptr<void>> parts_;  // owns the parts that not every configuration has
   std::vector<RequestSource*> sources_;       // the sources among these parts, by priority
+  PrefetchSender* prefetches_ = nullptr;      // sends when no source does
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
   // This is the first cycle with work of the unit's own, unless answers of the L1 come before. It is 0 when a
   // warp was submitted since the last tick.

@@ -19,7 +19,7 @@ StackMover::StackMover(std::unique_ptr<StackModel> model, Address stacks, mem::L
       work_(buffer.size()) {
 }
 
-void StackMover::entered(uint32_t slot, int lane) {
+void StackMover::entered(uint32_t slot, int lane, Cycle) {
   RayState& ray = buffer_[slot].ray_of(lane);
   if (model_->keeps_path()) keep_path(ray, buffer_[slot].warp_slot, lane);
   work_of(slot, lane) = model_->settle(ray);

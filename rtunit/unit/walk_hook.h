@@ -3,25 +3,16 @@
 #pragma once
 #include <cstdint>
 
-#include "rtunit/traversal/ray_state.h"
+#include "rtunit/visit.h"
 
 namespace glint::rt {
-
-// Describes a visit that has just been made.
-struct Visit {
-  uint32_t slot = 0;  // of the warp buffer
-  int lane = 0;
-  RayState& ray;
-  NodeKind kind = NodeKind::Internal;
-  uint32_t hits = 0;  // triangles of the node that were met within the ray's interval
-};
 
 // RayWalk calls its hooks at each step in the order in which they were added.
 class WalkHook {
  public:
   virtual ~WalkHook() = default;
   // Tells that a ray enters the unit, for the first time (no node visited yet) or after a shader.
-  virtual void entered(uint32_t /*slot*/, int /*lane*/) {}
+  virtual void entered(uint32_t /*slot*/, int /*lane*/, Cycle /*now*/) {}
   // Tells that the lane is about to want its ray's next node, or to stop. Returns true when something else
   // comes first: the hook has made the lane want a read of its own, or calls RayWalk::go_on() when it is
   // done.

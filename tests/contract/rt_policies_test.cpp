@@ -44,6 +44,7 @@ bool same_hit(const Hit& a, const Hit& b) {
 std::vector<Params> combinations() {
   std::vector<Params> out;
   uint32_t number = 0;
+  const std::vector<std::string> prefetchers = Registry<Prefetcher>::names();
   for (const std::string& order : Registry<ChildOrder>::names())
     for (const std::string& coalescing : Registry<Coalescer>::names())
       for (const std::string& stack : Registry<StackModel>::names())
@@ -55,6 +56,7 @@ std::vector<Params> combinations() {
               p.coalescing.name = coalescing;
               p.stack.name = stack;
               p.scheduler.name = scheduler;
+              p.prefetch.name = prefetchers[number % prefetchers.size()];
               p.retest = retest;
               p.mshr_entries = entries;
               p.result_store = number++ % 2;
@@ -67,7 +69,8 @@ std::vector<Params> combinations() {
 TEST_CASE(
     "with every combination of policies each ray finds the same hit, and skipping to events changes no "
     "cycle") {
-  uint64_t hits = 0, combination = 0, spills = 0, restarts = 0, across = 0, stale = 0, full = 0;
+  uint64_t hits = 0, combination = 0, spills = 0, restarts = 0, across = 0, stale = 0, full = 0,
+           prefetches = 0;
   std::vector<std::unique_ptr<BuiltScene>> built;
   std::vector<Scene> scenes;
   for (const std::string& format : Registry<NodeFormat>::names()) {
@@ -79,7 +82,7 @@ TEST_CASE(
     const bool gather = combination / 4 % 2;
     ++combination;
     CAPTURE(params.child_order.name, params.coalescing.name, params.stack.name, params.scheduler.name,
-            params.retest, params.mshr_entries, gather);
+            params.prefetch.name, params.retest, params.mshr_entries, gather);
     Rays expected(combination, scene, false), ticked(combination, scene, gather),
         skipped(combination, scene, gather);
     mem::FixedLatencyMemory l1_ticked(20, 2), l1_skipped(20, 2);
@@ -108,11 +111,12 @@ TEST_CASE(
     across += s.merged_across.value();
     stale += s.stale_nodes.value();
     full += s.cycles.count(Stall::MshrFull);
+    prefetches += s.cycles.count(Stall::Prefetch);
   }
   CHECK(combination == combinations().size());
   CHECK(hits > 10000);
   // Each mechanism must have been at work.
-  for (const uint64_t count : {spills, restarts, across, stale, full}) CHECK(count > 100);
+  for (const uint64_t count : {spills, restarts, across, stale, full, prefetches}) CHECK(count > 100);
 }
 
 }  // namespace

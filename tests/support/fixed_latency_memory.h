@@ -28,9 +28,10 @@ class FixedLatencyMemory final : public L1Port {
     }
     ++accesses_;
     log_.push_back(request);
-    if (!request.write && swallows_)
+    const bool is_answered = !request.write && request.traffic != Traffic::RtPrefetch;
+    if (is_answered && swallows_)
       ++swallowed_;
-    else if (!request.write)
+    else if (is_answered)
       ready_[size_t(client)].push_back({now + latency_, request.token});
     return true;
   }

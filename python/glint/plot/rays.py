@@ -11,10 +11,10 @@ from .kinds import Part, group_names, grouped, stacked, width_for
 from .style import COLOURS, new_figure, styled
 
 _FETCHES = [("rt_node", "internal nodes", "blue"), ("rt_instance", "instances", "orange"), ("rt_triangle", "triangles", "green"),
-            ("rt_procedural", "procedurals", "pink"), ("rt_table", "candidate tables", "yellow"), ("rt_stack", "stacks", "grey")]
+            ("rt_procedural", "procedurals", "pink"), ("rt_table", "candidate tables", "yellow"), ("rt_stack", "stacks", "grey"), ("rt_prefetch", "prefetches", "sky")]
 _CYCLES = [("node_request", "sends a request", "green"), ("test_busy", "waits for a test unit", "blue"), ("test_latency", "tests in flight", "sky"),
            ("waiting_memory", "waits for memory", "orange"), ("l1_refused", "refused by the L1", "red"), ("mshr_full", "no entry free", "pink"),
-           ("handover", "hand-over", "yellow"), ("idle", "idle", "pale")]
+           ("prefetch", "sends a prefetch", "grey"), ("handover", "hand-over", "yellow"), ("idle", "idle", "pale")]
 
 
 def geometry(runs: Chosen) -> Any:

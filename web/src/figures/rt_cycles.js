@@ -6,7 +6,7 @@ import { runRows } from "./shared.js";
 const kParts = [
   ["node_request", "sends a request", "green"], ["test_busy", "waits for a test unit", "blue"], ["test_latency", "tests in flight", "sky"],
   ["waiting_memory", "waits for memory", "orange"], ["l1_refused", "refused by the L1", "red"], ["mshr_full", "no entry free", "pink"],
-  ["handover", "hand-over", "yellow"], ["idle", "idle", "pale"],
+  ["prefetch", "sends a prefetch", "grey"], ["handover", "hand-over", "yellow"], ["idle", "idle", "pale"],
 ];
 
 export const info = { id: "rt-cycles", title: "Cycles of the RT units", note: "All units, from launch to end." };

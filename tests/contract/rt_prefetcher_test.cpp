@@ -1,0 +1,111 @@
+// Tests that every registered prefetcher keeps the promises of rtunit/prefetcher.h.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/registry.h"
+#include "tests/support/catch.h"
+#include "tests/support/rt_launch.h"
+#include "tests/support/stat_listing.h"
+
+namespace glint::rt::test {
+namespace {
+
+struct Outcome {
+  std::vector<Address> prefetched;  // physical addresses, in order
+  std::string stats;
+  std::vector<WarpRays> rays;
+};
+
+// Traces six warps of random rays with a prefetcher.
+Outcome trace(const std::string& prefetcher, const mem::AddressSpace& memory, const StructureInfo& top,
+              bool every_cycle) {
+  Params params;
+  params.prefetch.name = prefetcher;
+  params.warps = 2;
+  params.box.latency = 40;  // leaves the port free at times
+  Random random{21};
+  Outcome out;
+  out.rays.resize(6);
+  for (WarpRays& warp : out.rays)
+    for (RayState& state : warp) {
+      state = ray_of(top.address, random.point(12), random.point(1));
+      REQUIRE(begin(state, memory));
+    }
+  stats::Group root(nullptr, "test");
+  mem::FixedLatencyMemory l1(60, 1);
+  RtUnit unit(params, {memory, l1, &root});
+  const Launch done = launch(unit, l1, out.rays, every_cycle);
+  REQUIRE(done.completions >= out.rays.size());
+  unit.finish(done.last_completion + 1);
+  for (const mem::Request& request : l1.log())
+    if (request.traffic == mem::Traffic::RtPrefetch) {
+      REQUIRE(mem::num_sectors(request.sectors) == 1);
+      uint32_t sector = 0;
+      while (!(request.sectors >> sector & 1)) ++sector;
+      out.prefetched.push_back(request.line + Address{sector} * mem::kSectorBytes);
+    }
+  out.stats = glint::test::listing(root);
+  return out;
+}
+
+TEST_CASE("a prefetcher changes no hit, repeats itself exactly and asks for memory that rays read") {
+  Random random{8};
+  const Positions positions = soup(random, 400, 10, 2);
+  mem::AddressSpace memory;
+  const StructureInfo top = single(memory, triangles(positions, false));
+  const Outcome plain = trace("none", memory, top, true);
+  REQUIRE(plain.prefetched.empty());
+  const auto names = Registry<Prefetcher>::names();
+  REQUIRE(names.size() >= 2);
+  for (const std::string& name : names) {
+    CAPTURE(name);
+    const Outcome a = trace(name, memory, top, true), b = trace(name, memory, top, false);
+    CHECK(a.prefetched == b.prefetched);
+    CHECK(glint::test::first_difference(a.stats, b.stats) == "");
+    CHECK((name == "none") == a.prefetched.empty());
+    for (const Address at : a.prefetched) REQUIRE(at < memory.bytes_allocated());
+    for (size_t w = 0; w < plain.rays.size(); ++w)
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        const Hit &expected = plain.rays[w][lane].committed, &found = a.rays[w][lane].committed;
+        REQUIRE(std::memcmp(&expected.t, &found.t, 12) == 0);
+        REQUIRE(expected.instance == found.instance);
+        REQUIRE(expected.primitive == found.primitive);
+      }
+  }
+}
+
+TEST_CASE("a queue of prefetches loses nothing: each wish is counted where it went") {
+  mem::AddressSpace memory;
+  const Address at = memory.allocate("nodes", 1024);
+  PrefetchQueue queue(4, memory, nullptr);
+  const PrefetchQueueStats& stats = queue.stats();
+  queue.want(Fetch{at + 8, 64, NodeKind::Internal});  // touches three sectors
+  CHECK(queue.size() == 3);
+  CHECK(queue.front() == at);
+  queue.want(at + 33);
+  CHECK(stats.repeated.value() == 1);
+  queue.want(Address{12});
+  CHECK(stats.outside.value() == 1);
+  queue.want(at + 512);
+  queue.want(at + 544);
+  CHECK(stats.too_many.value() == 1);
+  queue.remove(at + 40, 8);
+  CHECK(stats.demanded.value() == 1);
+  queue.note_sent(false);
+  CHECK(queue.front() == at);
+  queue.note_sent(true);
+  CHECK(queue.front() == at + 64);
+  queue.clear();
+  CHECK(queue.empty());
+  CHECK(stats.dropped.value() == 2);
+  CHECK(stats.refused.value() == 1);
+  CHECK(stats.wishes.value() == stats.repeated.value() + stats.outside.value() + stats.too_many.value() +
+                                    stats.demanded.value() + stats.dropped.value() + stats.sent.value());
+}
+
+}  // namespace
+}  // namespace glint::rt::test
