@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "memsys/request.h"
+#include "rtunit/unit/rt_unit.h"
 
 namespace glint::pipeline {
 namespace {
@@ -46,6 +47,8 @@ void check(const GpuParams& params, Diagnostics& diagnostics) {
     diagnostics.error({},
                       fmt::format("'rt.request_bytes' is {}, expected a multiple of the sector of {} bytes",
                                   params.rt.request_bytes, mem::kSectorBytes));
+  if (const std::string why = rt::RtUnit::why_not_together(params.rt); !why.empty())
+    diagnostics.error({}, why);
 }
 
 }  // namespace glint::pipeline

@@ -15,6 +15,7 @@
 #include "rtunit/ray_scheduler.h"
 #include "rtunit/shortcuts/shortcuts.h"
 #include "rtunit/stack_model.h"
+#include "rtunit/work_mapping.h"
 
 namespace glint::rt {
 
@@ -62,6 +63,7 @@ struct Params {
   PolicyChoice<ChildOrder> child_order{"near_first"};
   PolicyChoice<Coalescer> coalescing{"within_warp"};
   PolicyChoice<StackModel> stack{"short_stack"};
+  PolicyChoice<WorkMapping> mapping{"own_ray"};
   PolicyChoice<Prefetcher> prefetch{"none"};
   uint32_t prefetch_queue =
       512;  // Choice: 16 entries for each lane of a warp; the published one has no bound
@@ -110,6 +112,8 @@ struct Params {
         policy(&Params::coalescing, "coalescing",
                "Selects which lanes that want the same node share its fetch."),
         policy(&Params::stack, "stack", "Selects where a ray keeps the nodes that it still has to visit."),
+        policy(&Params::mapping, "mapping",
+               "Selects which lanes visit nodes for the rays of other lanes of their warp."),
         policy(&Params::prefetch, "prefetch", "Selects which nodes are read before a ray asks for them."),
         param(&Params::prefetch_queue, "prefetch_queue", "sector",
               "Largest number of sectors that wait to be read ahead.", 1, 65536),

@@ -34,7 +34,7 @@ void SplitReads::entered(uint32_t slot, int lane, Cycle) {
   if (shortcuts_.fetch_headers && buffer_[slot].ray_of(lane).nodes_visited == 0) lanes.header |= bit;
 }
 
-bool SplitReads::detour(uint32_t slot, int lane) {
+bool SplitReads::detour(uint32_t slot, int lane, Cycle) {
   RayState& ray = buffer_[slot].ray_of(lane);
   if (ray.status != RayStatus::Traversing) return false;
   const Lanes& lanes = lanes_[slot];

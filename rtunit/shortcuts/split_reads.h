@@ -20,7 +20,7 @@ class SplitReads final : public WalkHook {
              TestPipelines& pipelines, RtStats& stats);
 
   void entered(uint32_t slot, int lane, Cycle now) override;
-  bool detour(uint32_t slot, int lane) override;
+  bool detour(uint32_t slot, int lane, Cycle now) override;
   void errand_started(uint32_t slot, int lane) override;
   void visited(const Visit& visit) override;
 

@@ -26,6 +26,7 @@ struct Leaves {
   std::vector<uint32_t> stack_need;  // stack entries needed below each leaf, by item
   std::vector<std::byte> bytes;
   uint64_t primitives = 0;
+  uint8_t contents = 0;  // as StructureHeader::contents
   template <class Leaf>
   void add(const Bounds& bounds, NodeKind kind, const Leaf& leaf, uint32_t need = 0) {
     const size_t at = bytes.size();
@@ -131,6 +132,7 @@ void add_triangles(const Geometry& g, uint32_t geometry, bool pair, Leaves& leav
       extend(bounds, bounds_of(*second));
     }
     leaves.primitives += leaf.count;
+    if (!g.opaque) leaves.contents |= contents::kNotOpaque;
     leaves.add(bounds, NodeKind::Triangle, leaf);
   }
 }
@@ -148,6 +150,7 @@ void add_aabbs(const Geometry& g, uint32_t geometry, Leaves& leaves) {
     leaf.primitive = uint32_t(i);
     leaf.opaque = g.opaque;
     ++leaves.primitives;
+    leaves.contents |= contents::kProcedural;
     leaves.add(box, NodeKind::Procedural, leaf);
   }
 }
@@ -191,6 +194,7 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves& leaves, con
                     info.stack_need, kStackEntries));
   info.bounds = tree.nodes[0].bounds;
   info.primitives = leaves.primitives;
+  info.contents = leaves.contents;
   tree.leaf_bytes = std::move(leaves.bytes);
   std::vector<std::byte> bytes = format->encode(tree);
   info.bytes = bytes.size();
@@ -200,6 +204,7 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves& leaves, con
   StructureHeader header;
   header.format = uint8_t(format->id());
   header.level = level;
+  header.contents = info.contents;
   header.bounds = info.bounds;
   header.num_primitives = uint32_t(info.primitives);
   header.stack_need = info.stack_need;
@@ -318,6 +323,8 @@ StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
     leaf.object_to_world = instance.transform;
     leaf.instance = uint32_t(i);
     ++leaves.primitives;
+    leaves.contents |= bottom.contents;
+    if (instance.flags & instance_flag::kForceNoOpaque) leaves.contents |= contents::kNotOpaque;
     leaves.add(world_bounds(instance.transform, bottom.bounds), NodeKind::Instance, leaf, bottom.stack_need);
   }
   return place(memory, name, encode(name, 1, leaves, options));

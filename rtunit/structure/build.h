@@ -64,6 +64,7 @@ struct StructureInfo {
   uint32_t depth = 0;       // number of internal nodes from the root to the deepest leaf
   uint64_t primitives = 0;  // active triangles and AABBs, or active instances
   uint32_t stack_need = 0;  // stack entries that the worst ray needs, instances' bottom levels included
+  uint8_t contents = 0;     // as StructureHeader::contents
 };
 
 // Holds a bottom level as bytes that may lie anywhere. Its geometry is no longer needed. `info.address` is

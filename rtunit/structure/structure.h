@@ -54,13 +54,20 @@ struct Bounds {
   bool operator==(const Bounds&) const = default;
 };
 
+// Says what a structure holds that may need a shader, as bits of StructureHeader::contents.
+namespace contents {
+inline constexpr uint8_t kNotOpaque = 1, kProcedural = 2;
+}
+
 struct StructureHeader {
   static constexpr uint32_t kMagic = 0x53424c47;  // "GLBS"
   uint32_t magic = kMagic;
-  uint8_t format = 0, level = 0, pad[2]{};  // level: 0 bottom, 1 top
-  Bounds bounds;                            // in the level's own space; empty (low > high) without primitives
-  uint32_t num_primitives = 0;              // active triangles and boxes, or active instances
-  uint32_t stack_need = 0;                  // entries that the worst ray needs in this structure
+  uint8_t format = 0, level = 0;  // level: 0 bottom, 1 top
+  uint8_t contents = 0;           // of the top level: of all its instances together
+  uint8_t pad = 0;
+  Bounds bounds;                // in the level's own space; empty (low > high) without primitives
+  uint32_t num_primitives = 0;  // active triangles and boxes, or active instances
+  uint32_t stack_need = 0;      // entries that the worst ray needs in this structure
   uint64_t bytes = 0;
   uint64_t reserved[2]{};
 };

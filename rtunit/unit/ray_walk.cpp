@@ -36,13 +36,17 @@ void RayWalk::start(uint32_t slot, int lane, Cycle now) {
   }
   ray.rules.retest = retest_;
   ray.rules.order = child_order_->for_rays();
+  start_part(slot, lane, now);
+}
+
+void RayWalk::start_part(uint32_t slot, int lane, Cycle now) {
   for (WalkHook* hook : hooks_) hook->entered(slot, lane, now);
   go_on(slot, lane, now);
 }
 
 void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
   for (WalkHook* hook : hooks_)
-    if (hook->detour(slot, lane)) return;
+    if (hook->detour(slot, lane, now)) return;
   RayState& ray = buffer_[slot].ray_of(lane);
   if (ray.status == RayStatus::Traversing) {
     const Fetch node = next_fetch(ray);
@@ -53,6 +57,7 @@ void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
       return buffer_.want(slot, lane, node, pipe_of(node.kind));
     }
     break_off(ray);
+    return go_on(slot, lane, now);
   }
   stop(slot, lane, now);
 }
@@ -72,7 +77,9 @@ void RayWalk::end_test(uint32_t slot, int lane, Cycle now) {
 void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
   const Fetch& node = buffer_[slot].read[size_t(lane)].what;
   RayState& ray = buffer_[slot].ray_of(lane);
-  node_visited_.fire([&] { return NodeVisited{now, buffer_[slot].warp_slot, lane, node}; });
+  node_visited_.fire([&] {
+    return NodeVisited{now, buffer_[slot].warp_slot, buffer_[slot].owner_of(lane), node};
+  });
   const uint32_t boxes = ray.box_tests, triangles = ray.triangle_tests, hits = ray.hits_in_interval;
   const int before = ray.stack_size;
   if (!retest_ && ray.stack[size_t(ray.stack_size) - 1].t_enter > ray.committed.t) ++stats_.stale_nodes;
@@ -90,7 +97,7 @@ void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
 // A shader that gets the ray may end its walk, so the ray is counted now. start() takes the count back when
 // the ray returns.
 void RayWalk::stop(uint32_t slot, int lane, Cycle now) {
-  RayState& ray = buffer_[slot].ray_of(lane);
+  RayState& ray = buffer_[slot].states[lane];
   ray.unit_cycles += now - buffer_[slot].arrived;
   stats_.ray_latency.add(ray.unit_cycles);
   stats_.ray_nodes.add(ray.nodes_visited);

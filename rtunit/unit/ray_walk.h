@@ -37,12 +37,15 @@ class RayWalk {
   // Starts the test of a node. The functional step is made now; the unit sees its outcome when the test ends.
   void start_test(uint32_t slot, int lane, Cycle now);
   void end_test(uint32_t slot, int lane, Cycle now);
+  // Lets a lane begin to work on a part of another lane's ray, which WorkSharing has given it.
+  void start_part(uint32_t slot, int lane, Cycle now);
+  // Ends the walk of the lane's own ray.
+  void stop(uint32_t slot, int lane, Cycle now);
 
   Probe<NodeVisited>& node_visited() { return node_visited_; }
 
  private:
   void visit(uint32_t slot, int lane, Cycle now);
-  void stop(uint32_t slot, int lane, Cycle now);
 
   const bool retest_;
   const mem::AddressSpace& memory_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <concepts>
+#include <fmt/format.h>
+#include <string>
 #include <utility>
 
 #include "base/check.h"
@@ -22,6 +24,15 @@ uint64_t RtUnit::result_bytes(const Params& params) {
 
 uint64_t RtUnit::stack_bytes_per_warp(const Params& params) {
   return StackMover::bytes_per_warp(*params.stack.make({}));
+}
+
+std::string RtUnit::why_not_together(const Params& params) {
+  if (params.mapping.name != WorkMapping::kOwnRay && params.stack.make({})->keeps_path())
+    return fmt::format(
+        "rt.mapping = \"{}\" does not go with rt.stack = \"{}\": that stack follows the path of a whole ray, "
+        "and lanes that share a ray each follow a part of it",
+        params.mapping.name, params.stack.name);
+  return {};
 }
 
 RtUnit::RtUnit(const Params& params, const Context& context)
@@ -56,6 +67,8 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
     prefetches_ = &add<PrefetchSender>(params, context.memory, context.l1, buffer_, stats_);
     fetches_.set_listener(*prefetches_);
   }
+  if (params.mapping.name != WorkMapping::kOwnRay)
+    sharing_ = &add<WorkSharing>(params, context.memory, buffer_, walk_, stats_);
   if (shortcuts.same_cycle_hits)
     after_requests_.push_back([this](Cycle now) {
       receive(now);
@@ -86,6 +99,7 @@ void RtUnit::run(Cycle now) {
   pipelines_.finish_tests(now);
   receive(now);
   pipelines_.start_tests(now);
+  if (sharing_) sharing_->share(now);
   const Stall reason = send_requests(now);
   for (const auto& step : after_requests_) step(now);
   account_.account(now, reason, idle_reason(), {buffer_.num_resident(), buffer_.num_rays()});
@@ -132,6 +146,7 @@ Cycle RtUnit::find_due(Cycle now) const {
   Cycle next = std::min(fetches_.next_event(now), pipelines_.next_event());
   for (const RequestSource* source : sources_) next = std::min(next, source->next_event(now));
   if (prefetches_) next = std::min(next, prefetches_->next_event(now));
+  if (sharing_) next = std::min(next, sharing_->next_event(now));
   return next == kNever ? next : std::max(next, now + 1);
 }
 

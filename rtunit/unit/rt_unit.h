@@ -22,6 +22,7 @@
 #include "rtunit/unit/rt_stats.h"
 #include "rtunit/unit/test_pipelines.h"
 #include "rtunit/unit/warp_buffer.h"
+#include "rtunit/unit/work_sharing.h"
 
 namespace glint::rt {
 
@@ -48,6 +49,8 @@ class RtUnit final : public RtPort {
   // Returns the bytes that Context::results must hold. 0: it is not used.
   static uint64_t result_bytes(const Params& params);
   static uint64_t stack_bytes_per_warp(const Params& params);
+  // Returns why the chosen policies do not go together, or nothing when they do.
+  static std::string why_not_together(const Params& params);
 
   bool can_accept() const override { return buffer_.has_room(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
@@ -71,12 +74,13 @@ class RtUnit final : public RtPort {
   uint32_t num_resident() const { return buffer_.num_resident(); }
   Probe<NodeVisited>& node_visited() { return walk_.node_visited(); }
   Probe<WarpMoved>& warp_moved() { return buffer_.warp_moved(); }
-  // Calls each(warp slot, lanes) for all whom the read that is just being sent serves. `token` is the token
-  // of its request.
+  // Calls each(warp slot, lanes) for all whose rays the read that is just being sent serves. `token` is the
+  // token of its request.
   template <class Each>
   void for_each_reader(mem::Token token, Each&& each) const {
-    fetches_.for_each_reader(token,
-                             [&](uint32_t slot, LaneMask lanes) { each(buffer_[slot].warp_slot, lanes); });
+    fetches_.for_each_reader(token, [&](uint32_t slot, LaneMask lanes) {
+      each(buffer_[slot].warp_slot, buffer_[slot].owners_of(lanes));
+    });
   }
 
  private:
@@ -103,6 +107,7 @@ class RtUnit final : public RtPort {
   std::vector<std::shared_ptr<void>> parts_;  // owns the parts that not every configuration has
   std::vector<RequestSource*> sources_;       // the sources among these parts, by priority
   PrefetchSender* prefetches_ = nullptr;      // sends when no source does
+  WorkSharing* sharing_ = nullptr;            // lets lanes help each other
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
   // This is the first cycle with work of the unit's own, unless answers of the L1 come before. It is 0 when a
   // warp was submitted since the last tick.

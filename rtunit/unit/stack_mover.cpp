@@ -47,7 +47,7 @@ void StackMover::keep_path(RayState& ray, uint32_t warp_slot, int lane) {
 }
 
 // A lane does not wait for its spills. It waits for its fills and repeated visits, which follow one another.
-bool StackMover::detour(uint32_t slot, int lane) {
+bool StackMover::detour(uint32_t slot, int lane, Cycle) {
   StackWork& work = work_of(slot, lane);
   for (; work.spills; --work.spills) {
     moves_.push({slot, work.row++, uint8_t(lane), false});

@@ -29,7 +29,7 @@ class StackMover final : public RequestSource, public WalkHook {
   static bool is_needed(const StackModel& model) { return model.rows() != 0 || model.keeps_path(); }
 
   void entered(uint32_t slot, int lane, Cycle now) override;
-  bool detour(uint32_t slot, int lane) override;
+  bool detour(uint32_t slot, int lane, Cycle now) override;
   void errand_started(uint32_t slot, int lane) override;
   void visited(const Visit& visit) override;
 

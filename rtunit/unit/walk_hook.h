@@ -16,7 +16,7 @@ class WalkHook {
   // Tells that the lane is about to want its ray's next node, or to stop. Returns true when something else
   // comes first: the hook has made the lane want a read of its own, or calls RayWalk::go_on() when it is
   // done.
-  virtual bool detour(uint32_t /*slot*/, int /*lane*/) { return false; }
+  virtual bool detour(uint32_t /*slot*/, int /*lane*/, Cycle /*now*/) { return false; }
   // Tells that the test of a read that the hook asked for has started.
   virtual void errand_started(uint32_t /*slot*/, int /*lane*/) {}
   // Tells that the test of the ray's node has started; the traversal has made its step.

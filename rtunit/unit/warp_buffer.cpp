@@ -23,7 +23,7 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
   free->is_used = true;
   free->warp_slot = warp_slot;
   free->mask = mask;
-  free->wanting = free->stopped = 0;
+  free->wanting = free->stopped = free->helping = 0;
   free->states = states;
   free->age = next_age_++;
   free->arrived = now;

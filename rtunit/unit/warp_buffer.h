@@ -34,6 +34,11 @@ struct BufferSlot {
   uint32_t warp_slot = 0;  // the core's warp slot
   LaneMask mask = 0, wanting = 0, stopped = 0;
   RayState* states = nullptr;
+  // Lanes in `helping` work on parts of other lanes' rays, which lie in `parts`; WorkSharing decides. Each
+  // has the lane whose ray it is in `owner`.
+  LaneMask helping = 0;
+  RayState* parts = nullptr;
+  std::array<uint8_t, kLanes> owner{};
   uint64_t age = 0;  // order of arrival
   Cycle arrived = 0;
   uint32_t unsent_writes = 0;     // The warp stays until the L1 has taken them.
@@ -43,8 +48,16 @@ struct BufferSlot {
   // once.
   alignas(FourBits) std::array<uint32_t, kLanes> low_address{};
 
-  // Returns the ray that a lane works for.
-  RayState& ray_of(int lane) const { return states[lane]; }
+  bool is_helping(int lane) const { return helping >> lane & 1; }
+  // Returns the ray that a lane works on, or the part of one.
+  RayState& ray_of(int lane) const { return is_helping(lane) ? parts[lane] : states[lane]; }
+  // Returns the lane whose ray a lane works for.
+  int owner_of(int lane) const { return is_helping(lane) ? owner[size_t(lane)] : lane; }
+  LaneMask owners_of(LaneMask lanes) const {
+    LaneMask out = lanes & ~helping;
+    for_each_lane(lanes & helping, [&](int lane) { out |= LaneMask{1} << owner[size_t(lane)]; });
+    return out;
+  }
   bool is_done() const { return stopped == mask && unsent_writes == 0; }
 };
 

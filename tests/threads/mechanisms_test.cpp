@@ -56,6 +56,8 @@ const std::vector<Mechanism> kMechanisms = {
      [](GpuParams& p) { p.rt.coalescing = PolicyChoice<rt::Coalescer>("each_lane"); }},
     {"deferred any-hit", [](GpuParams& p) { p.rt.any_hit = PolicyChoice<rt::AnyHitMode>("deferred"); }},
     {"result stores", [](GpuParams& p) { p.rt.result_store = true; }},
+    {"lanes that help each other",
+     [](GpuParams& p) { p.rt.mapping = PolicyChoice<rt::WorkMapping>("cooperative"); }},
     {"prefetches from stacks",
      [](GpuParams& p) { p.rt.prefetch = PolicyChoice<rt::Prefetcher>("stack_trend"); }},
     {"two RT entries", [](GpuParams& p) { p.rt.mshr_entries = 2; }},
