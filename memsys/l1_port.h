@@ -1,6 +1,7 @@
 // Interface: takes the requests of a core's units to the L1 data cache and gives their answers back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,15 +26,36 @@ class L1Port {
  public:
   virtual ~L1Port() = default;
   virtual bool access(Cycle now, Client client, const Request& request) = 0;
-  virtual std::optional<Token> pop(Cycle now, Client client) = 0;
-  // Returns whether pop() has a token to give back.
-  virtual bool has_answer(Cycle now, Client client) const = 0;
+  // Returns whether pop() has a token to give back. It is no virtual call, because units ask in every cycle.
+  bool has_answer(Cycle now, Client client) const { return answer_at(client) <= now; }
+  // Takes the client's first answer and returns its token, or none when no answer has come by `now`.
+  std::optional<Token> pop(Cycle now, Client client) {
+    if (!has_answer(now, client)) return std::nullopt;
+    return take_answer(client);
+  }
+  // Does the same for an answer that has come.
+  virtual Token take_answer(Client client) = 0;
   virtual void tick(Cycle now) = 0;
   virtual Cycle next_event(Cycle now) const = 0;  // is kNever when nothing is in flight
   virtual uint32_t line_bytes() const = 0;
   // Returns lines of text that say what is in flight and what waits for it, to explain a machine that is
   // stuck. The text is empty when nothing is in flight.
   virtual std::string describe() const { return {}; }
+
+ protected:
+  L1Port() { own_answers_at_.fill(kNever); }
+  L1Port(const L1Port&) = delete;
+  L1Port& operator=(const L1Port&) = delete;
+  // Return and note when the client's first answer comes. With kNever, none is known.
+  Cycle answer_at(Client client) const { return (*answers_at_)[size_t(client)]; }
+  void set_answer_at(Client client, Cycle at) { own_answers_at_[size_t(client)] = at; }
+  // Lets the answers of `other`, which outlives this port, be those of this port.
+  void share_answers(const L1Port& other) { answers_at_ = other.answers_at_; }
+
+ private:
+  using Times = std::array<Cycle, size_t(Client::Count)>;  // by client
+  Times own_answers_at_;
+  const Times* answers_at_ = &own_answers_at_;
 };
 
 }  // namespace glint::mem

@@ -25,6 +25,7 @@ Partition::Partition(const Params& params, uint32_t index, const PartitionMap& m
 
 void Partition::advance(Cycle from, Cycle until) {
   account(from);
+  for (const auto& slice : slices_) slice->prefetch();
   for (;;) {
     const Cycle now = std::max(next_work(), from);
     if (now >= until) break;

@@ -6,16 +6,19 @@
 
 #include "base/registry.h"
 #include "base/types.h"
+#include "memsys/request.h"
 
 namespace glint::mem {
 
-// Describes a line of a cache. Each mask has one bit for each sector of 32 bytes.
+// Describes a line of a cache in 8 bytes, because a look-up reads those of a whole set. Each mask has one bit
+// for each sector of 32 bytes.
 struct CacheLine {
-  Address address = 0;
-  uint8_t valid = 0;  // sectors that are present
-  uint8_t dirty = 0;  // sectors that are newer than the level below, also those written only in part
-  bool held = false;  // whether data of the line are on the way, so that it is never a victim
+  uint32_t key = kNoLine;  // line_key() of the line's address, or kNoLine when the slot holds no line
+  uint8_t valid = 0;       // sectors that are present
+  uint8_t dirty = 0;       // sectors that are newer than the level below, also those written only in part
+  bool held = false;       // whether data of the line are on the way, so that it is never a victim
   bool used() const { return valid || dirty || held; }
+  Address address() const { return Address{key} * kSectorBytes; }
 };
 
 // A slot holds one line: slot = set * ways + way.

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstdint>
 #include <fmt/format.h>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -71,8 +70,7 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
       slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
   if (missing) return miss(now, client, request, slot, missing);
   if (request.traffic != Traffic::RtPrefetch) {
-    Answers& answers = answers_[size_t(client)];
-    answers.push(answers.hits, {now + params_.hit_latency, order_, request.token});
+    answer(client, true, {now + params_.hit_latency, order_, request.token});
     latencies_.add(request.traffic, params_.hit_latency);
     prefetched_.used(slot, request.sectors);
   }
@@ -219,7 +217,7 @@ void L1Cache::evict(Cycle now, const TagArray::Line& victim) {
   if (!victim.dirty) return;
   ++stats_.write_backs;
   const Traffic traffic = params_.global_write_back ? Traffic::ShaderGlobal : Traffic::ShaderLocal;
-  queue_packet(now, {.line = victim.address, .sectors = victim.dirty, .write = true, .traffic = traffic});
+  queue_packet(now, {.line = victim.address(), .sectors = victim.dirty, .write = true, .traffic = traffic});
 }
 
 // Takes the answer that is ready first; of two that are ready in the same cycle, the one accepted first.
@@ -232,15 +230,21 @@ Token L1Cache::Answers::pop() {
   Ring<Completion>& ring = is_hit ? hits : fills;
   const Token token = ring.front().token;
   ring.pop();
-  at = std::min(hits.empty() ? kNever : hits.front().ready, fills.empty() ? kNever : fills.front().ready);
   return token;
 }
 
-std::optional<Token> L1Cache::pop(Cycle now, Client client) {
+void L1Cache::answer(Client client, bool is_hit, const Completion& completion) {
   Answers& answers = answers_[size_t(client)];
-  if (answers.at > now) return std::nullopt;
+  (is_hit ? answers.hits : answers.fills).push(completion);
+  set_answer_at(client, std::min(answer_at(client), completion.ready));
+}
+
+Token L1Cache::take_answer(Client client) {
   ++tokens_returned_;
-  return answers.pop();
+  Answers& answers = answers_[size_t(client)];
+  const Token token = answers.pop();
+  set_answer_at(client, answers.first());
+  return token;
 }
 
 Cycle L1Cache::next_departure() const {
@@ -290,8 +294,7 @@ bool L1Cache::fill(Cycle now) {
   fill_not_before_ = now + 1;
   if (is_kept) filled_cycle_ = now, filled_bank_ = bank_of(reply.line);
   if (reply.is_atomic) {
-    Answers& answers = answers_[size_t(reply.client)];
-    answers.push(answers.fills, {now, reply.order, reply.token});
+    answer(reply.client, false, {now, reply.order, reply.token});
     latencies_.add(Traffic::ShaderAtomic, uint32_t(now) - reply.stamps.accepted);
   } else {
     answer_waiters(now, reply);
@@ -321,8 +324,7 @@ void L1Cache::answer_waiters(Cycle now, const Reply& reply) {
   mshr_.arrive(mshr_.find(reply.line), reply.sectors, [&](Waiter& waiter) {
     waiter.missing &= uint8_t(~reply.sectors);
     if (waiter.missing) return false;
-    Answers& answers = answers_[size_t(waiter.client)];
-    answers.push(answers.fills, {now, waiter.order, waiter.token});
+    answer(waiter.client, false, {now, waiter.order, waiter.token});
     count_miss(waiter, now, reply.stamps);
     return true;
   });
@@ -341,7 +343,8 @@ void L1Cache::count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps) 
 
 Cycle L1Cache::next_event(Cycle now) const {
   Cycle next = std::min({next_departure(), next_fill(), port_.next_credit()});
-  for (const Answers& answers : answers_) next = std::min(next, answers.at);
+  for (size_t client = 0; client < answers_.size(); ++client)
+    next = std::min(next, answer_at(Client(client)));
   return next == kNever ? kNever : std::max(next, now);
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,8 +80,7 @@ class L1Cache final : public L1Port {
   L1Cache(const Params& params, uint16_t core, const PartitionMap& map, CorePort port, stats::Group* parent);
 
   bool access(Cycle now, Client client, const Request& request) override;
-  std::optional<Token> pop(Cycle now, Client client) override;
-  bool has_answer(Cycle now, Client client) const override { return answers_[size_t(client)].at <= now; }
+  Token take_answer(Client client) override;
   void tick(Cycle now) override {
     if (has_work(now)) run(now);
   }
@@ -125,11 +123,10 @@ class L1Cache final : public L1Port {
   // Holds the completed reads of one client; each ring is in the order in which they are ready.
   struct Answers {
     Ring<Completion> hits, fills;
-    Cycle at = kNever;  // when the first of both is ready
 
-    void push(Ring<Completion>& ring, const Completion& completion) {
-      ring.push(completion);
-      at = std::min(at, completion.ready);
+    Cycle first() const {
+      return std::min(hits.empty() ? kNever : hits.front().ready,
+                      fills.empty() ? kNever : fills.front().ready);
     }
     Token pop();
   };
@@ -140,6 +137,7 @@ class L1Cache final : public L1Port {
            (!miss_queue_.empty() && miss_queue_.front().ready <= now);
   }
   void run(Cycle now);
+  void answer(Client client, bool is_hit, const Completion& completion);
   bool refuse(Refusal reason);
   bool read(Cycle now, Client client, const Request& request);
   bool miss(Cycle now, Client client, const Request& request, uint32_t slot, uint8_t missing);

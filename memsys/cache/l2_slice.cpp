@@ -37,6 +37,11 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
       to_dram_(params_.dram_queue) {
 }
 
+void L2Slice::prefetch() const {
+  constexpr size_t kPackets = 32;  // Choice: a window of 48 cycles serves hardly more.
+  port_.each_coming(kPackets, [&](const Packet& packet) { tags_.prefetch(packet.line); });
+}
+
 void L2Slice::send_ready_replies(Cycle now) {
   while (!hit_replies_.empty() && hit_replies_.front().ready <= now) {
     send_reply(now, hit_replies_.front().reply);
@@ -244,7 +249,7 @@ void L2Slice::evict(Cycle now, const TagArray::Line& victim) {
   ++stats_.evictions;
   if (!victim.dirty) return;
   ++stats_.write_backs;
-  queue_for_dram(now + dram_latency_, victim.address, victim.dirty, true);
+  queue_for_dram(now + dram_latency_, victim.address(), victim.dirty, true);
 }
 
 void L2Slice::send_reply(Cycle now, const Reply& reply) {

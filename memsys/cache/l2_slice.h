@@ -72,6 +72,10 @@ class L2Slice {
   L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SlicePort port, stats::Group* parent,
           const std::string& name);
 
+  // Brings what the next packets need near to the host's core. It is called at the start of each window,
+  // since other cells have used the host's caches in the meantime.
+  void prefetch() const;
+
   // The partition calls fill(), send_ready_replies() and serve() in this order in each cycle in which it has
   // work: the last stage comes first.
   void fill(Cycle now, const DramReturn& data);

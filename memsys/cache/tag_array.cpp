@@ -21,7 +21,6 @@ TagArray::TagArray(const CacheShape& shape, const PolicyChoice<Replacement>& rep
       lines_(size_t{shape.sets} * shape.ways),
       has_index_(shape.ways > kMaxWaysSearched),
       index_(has_index_ ? lines_.size() : 0),
-      keys_(has_index_ ? 0 : lines_.size(), kNoLine),
       replacement_(replacement.make({shape.sets, shape.ways})) {
 }
 

@@ -49,9 +49,9 @@ class TagArray {
     const uint32_t slot = victim_of(address);
     Line& line = lines_[slot];
     if (line.used()) leave(slot);
-    line.address = address;
+    line.key = line_key(address);
     line.valid = line.dirty = 0;
-    enter(slot);
+    if (has_index_) index_.insert(address, slot);
     replacement_->filled(slot);
     return line;
   }
@@ -71,6 +71,13 @@ class TagArray {
     replacement_->emptied(slot);
   }
 
+  // Brings what find() and victim() need for the line near to the host's core.
+  void prefetch(Address address) const {
+    if (has_index_) return;
+    const uint32_t first = set_of(address) * shape_.ways;
+    for (uint32_t i = 0; i < shape_.ways; i += 64 / sizeof(Line)) __builtin_prefetch(&lines_[first + i]);
+    __builtin_prefetch(&lines_[first + shape_.ways - 1]);
+  }
   // Notes that an access found its line in the slot.
   void touch(uint32_t slot) { replacement_->touched(slot); }
 
@@ -84,26 +91,18 @@ class TagArray {
     return uint32_t(hash >> 32) % shape_.sets;
   }
 
-  // Returns the slot of a line among those of its set. The loop has no branches, so that the host compares
-  // several keys at a time.
+  // Returns the slot of a line among those of its set. The loop has no branches, because nobody can foresee
+  // in which way a line is.
   uint32_t find_in_set(Address address) const {
     const uint32_t key = line_key(address), first = set_of(address) * shape_.ways;
-    const uint32_t* keys = keys_.data() + first;
+    const Line* const lines = lines_.data() + first;
     uint32_t way = kNone;
-    for (uint32_t i = 0; i < shape_.ways; ++i) way = keys[i] == key ? i : way;
+    for (uint32_t i = 0; i < shape_.ways; ++i) way = lines[i].key == key ? i : way;
     return way == kNone ? kNone : first + way;
   }
-  void enter(uint32_t slot) {
-    if (has_index_)
-      index_.insert(lines_[slot].address, slot);
-    else
-      keys_[slot] = line_key(lines_[slot].address);
-  }
   void leave(uint32_t slot) {
-    if (has_index_)
-      index_.erase(lines_[slot].address);
-    else
-      keys_[slot] = kNoLine;
+    if (has_index_) index_.erase(lines_[slot].address());
+    lines_[slot].key = kNoLine;
   }
 
   // Choice: sets of up to this many ways are searched way by way.
@@ -112,9 +111,8 @@ class TagArray {
   CacheShape shape_;
   uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
   std::vector<Line> lines_;
-  const bool has_index_;  // Sets are large, so lines are found by index_. Otherwise keys_ are searched.
+  const bool has_index_;  // Sets are large, so lines are found by index_. Otherwise sets are searched.
   LineTable index_;
-  std::vector<uint32_t> keys_;  // by slot
   std::unique_ptr<Replacement> replacement_;
 };
 

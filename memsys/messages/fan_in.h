@@ -31,6 +31,12 @@ class FanIn final : public ChannelBase {
     ++head_;
     find_arrival();
   }
+  // Calls `visit` with the messages that have been delivered and not been taken, at most `most` of them.
+  template <class Visit>
+  void each_delivered(size_t most, Visit&& visit) const {
+    const size_t end = std::min(inbox_.size(), head_ + most);
+    for (size_t i = head_; i < end; ++i) visit(inbox_[i].message);
+  }
   size_t waiting() const {
     size_t n = inbox_.size() - head_;
     for (const Outbox& box : outboxes_) n += box.sent.size();

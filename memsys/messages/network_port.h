@@ -83,6 +83,11 @@ class NetworkPort {
     return receive_link_.received_at(arrival(), incoming_link_.cycles(bytes), bytes);
   }
   const Received& front() const { return wiring_.inbox->front(); }
+  // Calls `visit` with the next messages that come to this port, as far as they have been delivered.
+  template <class Visit>
+  void each_coming(size_t most, Visit&& visit) const {
+    wiring_.inbox->each_delivered(most, visit);
+  }
   // Takes the oldest message, which has been received, and returns its credit to the network.
   void take(Cycle now) {
     receive_link_.occupy_until(received());

@@ -59,7 +59,7 @@ mem::TagArray::Line& MemoryModel::line_of(Core& core, Address line, Cycle at) {
     return tags.line(slot);
   }
   if (const mem::TagArray::Line& victim = tags.victim(line); victim.dirty)
-    write_below(core, victim.address, victim.dirty, at);
+    write_below(core, victim.address(), victim.dirty, at);
   return tags.insert(line);
 }
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <deque>
 #include <fmt/format.h>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,18 +32,15 @@ class FixedLatencyMemory final : public L1Port {
       ++swallowed_;
     else if (is_answered)
       ready_[size_t(client)].push_back({now + latency_, request.token});
+    note_first(client);
     return true;
   }
-  std::optional<Token> pop(Cycle now, Client client) override {
+  Token take_answer(Client client) override {
     std::deque<Answer>& queue = ready_[size_t(client)];
-    if (queue.empty() || queue.front().at > now) return std::nullopt;
     const Token token = queue.front().token;
     queue.pop_front();
+    note_first(client);
     return token;
-  }
-  bool has_answer(Cycle now, Client client) const override {
-    const std::deque<Answer>& queue = ready_[size_t(client)];
-    return !queue.empty() && queue.front().at <= now;
   }
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override {
@@ -69,6 +65,11 @@ class FixedLatencyMemory final : public L1Port {
     Cycle at;
     Token token;
   };
+  void note_first(Client client) {
+    const std::deque<Answer>& queue = ready_[size_t(client)];
+    set_answer_at(client, queue.empty() ? kNever : queue.front().at);
+  }
+
   Cycle latency_;
   uint32_t accesses_per_cycle_, line_bytes_;
   Cycle cycle_ = kNever;

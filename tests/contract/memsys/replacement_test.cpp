@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/replacement.h"
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <vector>
@@ -96,7 +97,7 @@ std::vector<Address> victims(const PolicyChoice<Replacement>& policy, uint32_t w
       tags.touch(slot);
       continue;
     }
-    if (tags.victim(line).used()) out.push_back(tags.victim(line).address / 128);
+    if (tags.victim(line).used()) out.push_back(tags.victim(line).address() / 128);
     tags.insert(line).valid = 1;
   }
   return out;
@@ -177,6 +178,32 @@ TEST_CASE("lru replaces the line that was used longest ago, fifo the line that c
   CHECK(victims(chosen("fifo"), 4, reads) == Lines{0, 1, 2, 3, 4});
 }
 
+TEST_CASE("lru keeps the same order in a set of any size") {
+  std::mt19937 random(5);
+  for (const uint32_t ways : {1u, 2u, 16u, 32u, 33u, 100u}) {
+    CAPTURE(ways);
+    TagArray tags({1, ways, 128}, chosen("lru"));
+    Lines order;  // the lines that are present, newest first
+    for (int i = 0; i < 2000; ++i) {
+      const Address line = random() % (2 * ways) * 128;
+      const uint32_t slot = tags.find(line);
+      const auto found = std::find(order.begin(), order.end(), line);
+      REQUIRE((slot == TagArray::kNone) == (found == order.end()));
+      if (found != order.end()) {
+        tags.touch(slot);
+        order.erase(found);
+      } else {
+        if (order.size() == ways) {
+          REQUIRE(tags.victim(line).address() == order.back());
+          order.pop_back();
+        }
+        tags.insert(line).valid = 1;
+      }
+      order.insert(order.begin(), line);
+    }
+  }
+}
+
 TEST_CASE("plru follows its bits away from the lines used last, and past ways that do not exist") {
   // Ways are filled in order. After 0 1 2 3 the root names the lower half, and both halves name their lower
   // way.
@@ -206,7 +233,7 @@ TEST_CASE("srrip takes a line that lost its sectors first, and ages no other lin
   CHECK_FALSE(tags.victim(384).used());
   tags.insert(384).valid = 1;  // has the value 2, like 128 and 256
   tags.touch(tags.find(128));
-  CHECK(tags.victim(512).address == 384);  // is in the lower slot of two lines with the value 2
+  CHECK(tags.victim(512).address() == 384);  // is in the lower slot of two lines with the value 2
 }
 
 TEST_CASE("random draws every way about as often, another seed draws another sequence") {

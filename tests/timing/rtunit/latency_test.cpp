@@ -1,6 +1,5 @@
 // Tests the RT unit's cycles exactly: fetch, test and hand-over latencies, port and pipeline limits, merging.
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
 
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
@@ -189,11 +188,11 @@ TEST_CASE("a refused request is tried again until it is taken, and the cycles ar
   const Scene scene;
   class Stubborn final : public mem::L1Port {  // takes a request in every eighth cycle only
    public:
+    Stubborn() { share_answers(inner); }
     bool access(Cycle now, mem::Client client, const mem::Request& r) override {
       return now % 8 == 0 && inner.access(now, client, r);
     }
-    std::optional<mem::Token> pop(Cycle now, mem::Client client) override { return inner.pop(now, client); }
-    bool has_answer(Cycle now, mem::Client client) const override { return inner.has_answer(now, client); }
+    mem::Token take_answer(mem::Client client) override { return inner.take_answer(client); }
     void tick(Cycle) override {}
     Cycle next_event(Cycle now) const override { return inner.next_event(now); }
     uint32_t line_bytes() const override { return 128; }

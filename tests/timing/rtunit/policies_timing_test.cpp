@@ -1,6 +1,5 @@
 // Tests the cycles of the RT unit's policies exactly: reads, stacks that leave the chip, restarts, sharing.
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
 
 #include "memsys/memory_system.h"
 #include "tests/support/catch.h"
@@ -30,18 +29,16 @@ struct Thicket {
 // Remembers when each request was taken.
 class TimedMemory final : public mem::L1Port {
  public:
-  explicit TimedMemory(Cycle latency) : inner(latency) {}
+  explicit TimedMemory(Cycle latency) : inner(latency) { share_answers(inner); }
   bool access(Cycle now, mem::Client client, const mem::Request& r) override {
     sent.push_back(now);
     most_open = std::max(most_open, open += !r.write);
     return inner.access(now, client, r);
   }
-  std::optional<mem::Token> pop(Cycle now, mem::Client client) override {
-    const auto token = inner.pop(now, client);
-    open -= token.has_value();
-    return token;
+  mem::Token take_answer(mem::Client client) override {
+    --open;
+    return inner.take_answer(client);
   }
-  bool has_answer(Cycle now, mem::Client client) const override { return inner.has_answer(now, client); }
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override { return inner.next_event(now); }
   uint32_t line_bytes() const override { return 128; }

@@ -17,11 +17,11 @@ constexpr Cycle kMemoryLatency = 20;
 // Takes nothing in odd cycles.
 class HalfTimeMemory final : public mem::L1Port {
  public:
+  HalfTimeMemory() { share_answers(memory_); }
   bool access(Cycle now, mem::Client client, const mem::Request& request) override {
     return now % 2 == 0 && memory_.access(now, client, request);
   }
-  std::optional<mem::Token> pop(Cycle now, mem::Client client) override { return memory_.pop(now, client); }
-  bool has_answer(Cycle now, mem::Client client) const override { return memory_.has_answer(now, client); }
+  mem::Token take_answer(mem::Client client) override { return memory_.take_answer(client); }
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override { return memory_.next_event(now); }
   uint32_t line_bytes() const override { return memory_.line_bytes(); }

@@ -39,11 +39,27 @@ TEST_CASE("the least recently used line of a set is the victim") {
   TagArray tags({1, 3, 128}, "lru");
   for (const Address line : {0, 128, 256}) tags.insert(line).valid = 1;
   tags.touch(tags.find(0));
-  CHECK(tags.victim(384).address == 128);
+  CHECK(tags.victim(384).address() == 128);
   tags.insert(384).valid = 1;
   CHECK(tags.find(128) == TagArray::kNone);
   CHECK(tags.find(0) != TagArray::kNone);
-  CHECK(tags.victim(512).address == 256);
+  CHECK(tags.victim(512).address() == 256);
+}
+
+TEST_CASE("bringing a line's set near changes nothing that is found or replaced") {
+  for (const uint32_t ways : {1u, 3u, 16u, 64u}) {
+    CAPTURE(ways);
+    TagArray tags({2, ways, 128}, "lru");
+    for (Address line = 0; line < 300 * 128; line += 128) {
+      tags.prefetch(line);
+      const uint32_t victim = tags.slot_of(tags.victim(line));
+      CHECK(tags.find(line) == TagArray::kNone);
+      CHECK(tags.slot_of(tags.insert(line)) == victim);
+      tags.line(victim).valid = 1;
+      CHECK(tags.find(line) == victim);
+      CHECK(tags.line(victim).address() == line);
+    }
+  }
 }
 
 TEST_CASE("a set-associative array replaces only inside a line's set") {
@@ -51,7 +67,7 @@ TEST_CASE("a set-associative array replaces only inside a line's set") {
   std::set<Address> present;
   for (Address line = 0; line < 64 * 128; line += 128) {
     const TagArray::Line& victim = tags.victim(line);
-    if (victim.valid) present.erase(victim.address);
+    if (victim.valid) present.erase(victim.address());
     tags.insert(line).valid = 1;
     present.insert(line);
     CHECK(present.size() <= 8);
@@ -120,6 +136,24 @@ TEST_CASE("a fan-in shows nothing before delivery but counts it as the next arri
   CHECK(in.ready(5));
 }
 
+TEST_CASE("a fan-in tells of the messages that come next, and of no more than asked") {
+  FanIn<int> in(2);
+  in.send(1, 7, 2);
+  in.send(0, 5, 1);
+  in.send(0, 9, 3);
+  const auto coming = [&](size_t most) {
+    std::vector<int> out;
+    in.each_delivered(most, [&](int message) { out.push_back(message); });
+    return out;
+  };
+  CHECK(coming(9).empty());
+  in.deliver();
+  CHECK(coming(2) == std::vector<int>{1, 2});
+  in.pop();
+  CHECK(coming(9) == std::vector<int>{2, 3});
+  CHECK(in.front() == 2);
+}
+
 TEST_CASE("any number of partitions and slices is filled equally and addresses stay unique inside each") {
   const uint32_t n = GENERATE(1u, 3u, 4u, 12u, 24u, 80u), slices = GENERATE(1u, 2u, 3u);
   const bool mixed = GENERATE(true, false);
@@ -153,13 +187,13 @@ TEST_CASE("a line that is held is not a victim, and a set of such lines has none
   tags.insert(0).held = true;
   tags.insert(128).valid = 1;
   tags.touch(tags.find(128));
-  CHECK(tags.victim(256).address == 128);  // 0 is older, but it is held
+  CHECK(tags.victim(256).address() == 128);  // 0 is older, but it is held
   tags.insert(256).held = true;
   CHECK_FALSE(tags.has_victim(384));
   CHECK(tags.find(0) != TagArray::kNone);
   tags.line(tags.find(0)).held = false;
   tags.line(tags.find(0)).valid = 1;
-  CHECK(tags.victim(384).address == 0);
+  CHECK(tags.victim(384).address() == 0);
 }
 
 TEST_CASE("a row's chunks share bank group turns and a full row has row_bytes bytes") {
