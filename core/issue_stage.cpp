@@ -104,6 +104,14 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
   }
 }
 
+// Finds when the next instruction of the warp can issue, and brings what its issue needs near to the host's
+// core: other warps come first, as a rule.
+inline void IssueStage::prepare_next(WarpSlot& at, Cycle now) {
+  core_.executor.prefetch(at.warp);
+  core_.counts.prefetch(at.warp.simt.pc);
+  core_.warps.refresh(at, now);
+}
+
 inline void IssueStage::issue(uint32_t slot, Cycle now) {
   if (!core_.observers.empty()) [[unlikely]]
     tell_select(slot, now);
@@ -127,7 +135,7 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
   else if (issued.finished)
     retire(slot, now);
   else
-    core_.warps.refresh(slot, now);
+    prepare_next(at, now);
 }
 
 void IssueStage::run(Scheduler& scheduler, Cycle now) {

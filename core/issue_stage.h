@@ -35,6 +35,7 @@ class IssueStage {
   void hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
   void finish_fixed(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
   void start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now);
+  void prepare_next(WarpSlot& at, Cycle now);
   void issue_rest(uint32_t slot, Cycle now);
   void retire(uint32_t slot, Cycle now);
   void tell_select(uint32_t slot, Cycle now) const;

@@ -125,8 +125,8 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
   const auto op_times = params.op_times.make({});
   rows_.reserve(image.code.size());
   for (size_t pc = 0; pc < image.code.size(); ++pc) {
-    const isa::Inst& inst = image.code[pc];
-    const isa::OpRow& op = *image.rows[pc];
+    const isa::Inst& inst = image.code[pc].inst;
+    const isa::OpRow& op = *image.code[pc].row;
     const UnitParams& unit = units[size_t(op.unit)];
     IssueRow row;
     row.first_use = uint32_t(registers_.size());

@@ -98,8 +98,8 @@ void Barriers::open(Block& block, uint32_t barrier) {
   for (WarpMask rest = seen.waiting; rest; rest &= rest - 1) {
     WarpContext& warp = *block.warps[size_t(std::countr_zero(rest))];
     warp.waiting_at_barrier = false;
-    const isa::Inst& inst = world_.image->code[warp.barrier_pc];
-    const auto kind = BarrierKind(world_.image->rows[warp.barrier_pc]->detail);
+    const isa::Inst& inst = world_.image->code[warp.barrier_pc].inst;
+    const auto kind = BarrierKind(world_.image->code[warp.barrier_pc].row->detail);
     if (kind == BarrierKind::Count) {
       uint32_t* const to = warp.regs.write(inst.operand[0]);
       for_each_lane(warp.barrier_lanes, [&](int lane) { to[lane] = seen.count; });
@@ -132,7 +132,7 @@ bool Barriers::fail_stuck(const Block& block) {
   std::string what = "a barrier that nobody can complete: ";
   for (const auto& [at, warps] : waiting)
     what += fmt::format("{} of {} warps wait at {} {} ({}), ", warps, block.num_warps(),
-                        world_.image->rows[at.first]->name, at.second, world_.image->place_of(at.first));
+                        world_.image->code[at.first].row->name, at.second, world_.image->place_of(at.first));
   const bool ended = uint32_t(std::popcount(block.live())) < block.num_warps();
   what += ended ? "the others have ended" : "no other is left";
   return faults_.fail({std::move(what), world_.image->place_of(first->barrier_pc),

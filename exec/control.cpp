@@ -64,13 +64,13 @@ bool Control::branch(WarpContext& warp, uint32_t target) {
     simt.pc = target;
   } else if (exec == 0) {
     ++simt.pc;
-  } else if (world_.image->target_is_join[simt.pc]) {
+  } else if (world_.image->code[simt.pc].target_is_join) {
     // Lanes that go to a join wait there at once, so a loop's exits never grow the stack.
     if (!simt.arrive(target, exec))
       return faults_.fail(warp, std::countr_zero(exec), "branches to a join without its ssy");
     simt.active = stay;
     ++simt.pc;
-  } else if (world_.image->rows[simt.pc + 1]->effect == Effect::Join) {
+  } else if (world_.image->code[simt.pc + 1].effect == Effect::Join) {
     if (!simt.arrive(simt.pc + 1, stay))
       return faults_.fail(warp, std::countr_zero(stay), "falls into a join without its ssy");
     simt.active = exec;
@@ -96,7 +96,7 @@ bool Control::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
   for (LaneMask rest = warp.regs.exec; rest;) {
     const int lane = std::countr_zero(rest);
     const uint32_t chosen = index[lane];
-    if (chosen >= shader.end - table || world_.image->rows[table + chosen]->effect != Effect::Branch)
+    if (chosen >= shader.end - table || world_.image->code[table + chosen].effect != Effect::Branch)
       return faults_.fail(warp, lane,
                           fmt::format("branches to entry {} of a table that has no such entry", chosen));
     LaneMask same = 0;

@@ -79,8 +79,8 @@ std::string span_text(const Image& image, uint32_t first, uint32_t last) {
 std::vector<std::pair<uint32_t, uint32_t>> loops_of(const Image& image, uint32_t pc) {
   std::vector<std::pair<uint32_t, uint32_t>> out;
   for (uint32_t from = pc; from < image.code.size() && image.shader_of[from] == image.shader_of[pc]; ++from) {
-    if (image.rows[from]->effect != isa::Effect::Branch) continue;
-    const uint32_t to = uint32_t(image.code[from].imm);
+    if (image.code[from].effect != isa::Effect::Branch) continue;
+    const uint32_t to = uint32_t(image.code[from].inst.imm);
     if (to > pc) continue;
     const auto same =
         std::find_if(out.begin(), out.end(), [&](const auto& loop) { return loop.first == to; });

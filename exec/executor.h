@@ -70,8 +70,8 @@ class Executor {
   void start(WarpContext& warp, uint32_t warp_index) const;
 
   // Returns the instruction that execute() would run next.
-  const isa::Inst& next(const WarpContext& warp) const { return world_.image->code[warp.simt.pc]; }
-  const isa::OpRow& next_row(const WarpContext& warp) const { return *world_.image->rows[warp.simt.pc]; }
+  const isa::Inst& next(const WarpContext& warp) const { return world_.image->code[warp.simt.pc].inst; }
+  const isa::OpRow& next_row(const WarpContext& warp) const { return *world_.image->code[warp.simt.pc].row; }
 
   // Runs one instruction to its end. There are two exceptions. rt.trace, rt.resume and rq.proceed leave
   // `warp.waiting_for_rays` set: the machine traverses warp.rays[lane] for the lanes that are Traversing,
@@ -80,22 +80,24 @@ class Executor {
   // executed again when another warp of its block has come or ended, and has cleared it.
   Issued execute(WarpContext& warp, Cycle now) {
     const uint32_t pc = warp.simt.pc;
-    const isa::Inst& inst = world_.image->code[pc];
-    const isa::OpRow& row = *world_.image->rows[pc];
+    const Step& step = world_.image->code[pc];
+    const isa::Inst& inst = step.inst;
     LaneMask exec = warp.simt.active;
     if (inst.guard != isa::kNoGuard) {
       const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
       exec &= inst.guard & isa::kGuardNegate ? ~guard : guard;
     }
     warp.regs.exec = exec;
-    if (row.effect != isa::Effect::None || reads_clock_) return execute_effect(warp, inst, row, now);
-    const Issued issued{pc, &inst, &row, exec, warp.simt.active, false};
-    row.run(warp.regs, inst, row);
+    if (step.effect != isa::Effect::None || reads_clock_) return execute_effect(warp, inst, *step.row, now);
+    const Issued issued{pc, &inst, step.row, exec, warp.simt.active, false};
+    step.run(warp.regs, inst, *step.row);
     ++warp.simt.pc;
     ++warp.instructions;
     retired.fire([&] { return Retired{warp, issued}; });
     return issued;
   }
+  // Brings what execute() needs first near to the host's core.
+  void prefetch(const WarpContext& warp) const { __builtin_prefetch(&world_.image->code[warp.simt.pc]); }
   // Writes the answer predicate of the rays that the warp waits for.
   void finish_rays(WarpContext& warp) const { rays_.finish(warp); }
 

@@ -51,8 +51,7 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   const uint32_t first_file = uint32_t(image.files.size());
   for (size_t i = 0; i < program.code.size(); ++i) {
     const isa::OpRow& row = isa::op_table()[program.code[i].op];
-    image.code.push_back(relocate(program.code[i], row, first, uint32_t(constants.size())));
-    image.rows.push_back(&row);
+    image.code.emplace_back(relocate(program.code[i], row, first, uint32_t(constants.size())), row);
     isa::Line line = i < program.lines.size() ? program.lines[i] : isa::Line{};
     line.file = uint16_t(line.file + first_file);
     image.lines.push_back(line);
@@ -72,11 +71,9 @@ Image link(const std::vector<isa::Program>& programs) {
   Image image;
   std::vector<uint32_t> constants;
   for (const isa::Program& program : programs) append(image, program, constants);
-  for (size_t i = 0; i < image.code.size(); ++i) {
-    const bool branch = image.rows[i]->effect == isa::Effect::Branch;
-    image.target_is_join.push_back(branch &&
-                                   image.rows[size_t(image.code[i].imm)]->effect == isa::Effect::Join);
-  }
+  for (Step& step : image.code)
+    step.target_is_join =
+        step.effect == isa::Effect::Branch && image.code[size_t(step.inst.imm)].effect == isa::Effect::Join;
   image.constants = allocate_rows(constants.size());
   uint32_t* const table = image.constants.get();
   for (size_t i = 0; i < constants.size(); ++i)
@@ -113,7 +110,7 @@ std::string Image::line_of(uint32_t pc) const {
 std::string Image::place_of(uint32_t pc) const {
   if (pc >= code.size()) return fmt::format("instruction {}", pc);
   return fmt::format("{} (instruction {}: {})", line_of(pc), pc - shaders[shader_of[pc]].entry,
-                     rows[pc]->name);
+                     code[pc].row->name);
 }
 
 }  // namespace glint::exec

@@ -49,12 +49,23 @@ inline Rows allocate_rows(size_t count) {
   return Rows(static_cast<uint32_t*>(std::aligned_alloc(64, std::max<size_t>(count, 1) * sizeof(isa::Row))));
 }
 
+// Holds an instruction, and what executing it needs of its row, in one cache line of the host.
+struct alignas(64) Step {
+  Step(const isa::Inst& instruction, const isa::OpRow& its_row)
+      : inst(instruction), effect(its_row.effect), row(&its_row), run(its_row.run) {}
+
+  isa::Inst inst;
+  isa::Effect effect;           // OpRow::effect
+  bool target_is_join = false;  // It is a branch that goes to a `join`.
+  const isa::OpRow* row;        // op_table()[inst.op]
+  isa::Handler run;             // OpRow::run
+};
+static_assert(sizeof(Step) == 64);
+
 // Holds the code of all shaders, with absolute branch targets and constants in one table of 32-lane rows.
 struct Image {
-  std::vector<isa::Inst> code;
-  std::vector<const isa::OpRow*> rows;  // one per instruction: op_table()[code[i].op]
-  std::vector<uint8_t> target_is_join;  // one per instruction: a branch here goes to a `join`
-  std::vector<isa::Line> lines;         // one per instruction; file indexes Image::files
+  std::vector<Step> code;
+  std::vector<isa::Line> lines;  // one per instruction; file indexes Image::files
   std::vector<std::string> files;
   std::vector<uint32_t> shader_of;  // one per instruction
   std::vector<Shader> shaders;

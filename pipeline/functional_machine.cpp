@@ -60,8 +60,8 @@ FunctionalCounts run_in_order(const exec::World& world, uint64_t instruction_bud
 
 // What shaders print comes in order of launch ids, and as each thread printed it.
 bool prints(const exec::World& world) {
-  return world.prints && std::ranges::any_of(world.image->rows, [](const isa::OpRow* row) {
-           return isa::effect_row(row->effect).family == isa::EffectFamily::Print;
+  return world.prints && std::ranges::any_of(world.image->code, [](const exec::Step& step) {
+           return isa::effect_row(step.effect).family == isa::EffectFamily::Print;
          });
 }
 

@@ -24,7 +24,7 @@ ProfileRow row_of(const exec::Image& image, uint32_t pc, size_t reasons) {
   row.file = line.file < image.files.size() ? image.files[line.file] : "";
   row.line = line.line;
   row.index = pc - shader.entry;
-  row.op = image.rows[pc]->name;
+  row.op = image.code[pc].row->name;
   row.program = image.shader_of[pc];
   row.spirv = line.spirv;
   row.scope = line.scope;

@@ -41,11 +41,10 @@ void check(const GpuParams& gpu) {
 // Returns the largest number of ray queries that the image's shaders number.
 uint32_t num_queries(const exec::Image& image) {
   uint32_t count = 0;
-  for (size_t pc = 0; pc < image.code.size(); ++pc) {
-    if (image.rows[pc]->effect != isa::Effect::Query ||
-        image.rows[pc]->detail != isa::detail_of(isa::Query::Initialize))
+  for (const exec::Step& step : image.code) {
+    if (step.effect != isa::Effect::Query || step.row->detail != isa::detail_of(isa::Query::Initialize))
       continue;
-    const isa::Slot number = image.code[pc].operand[0];
+    const isa::Slot number = step.inst.operand[0];
     const bool is_constant = number >> isa::kBankShift == isa::kConstantBank >> isa::kBankShift;
     const uint32_t last =
         is_constant ? image.constants[size_t(number & isa::kSlotIndexMask) * kLanes] : exec::kMaxNumbered - 1;

@@ -162,8 +162,8 @@ Outcome run(const Recording& recording, const Form& form) {
     const isa::Path path = isa::Path(p);
     if (!isa::is_supported(path)) continue;
     pipeline::KernelWorld world(kernel);
-    for (size_t i = 0; i < world.image.rows.size(); ++i)
-      world.image.rows[i] = &isa::op_table(path)[world.image.code[i].op];
+    for (exec::Step& step : world.image.code)
+      step.row = &isa::op_table(path)[step.inst.op], step.run = step.row->run;
     world.set_grid({{recording.lanes / 32, 1, 1}, {32, 1, 1}, 0});
     std::vector<std::vector<std::byte>> arguments;
     std::vector<Address> at;
