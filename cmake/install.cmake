@@ -18,7 +18,7 @@ install(FILES ${PROJECT_BINARY_DIR}/glint-config.cmake ${PROJECT_BINARY_DIR}/gli
 install(TARGETS glint COMPONENT glint)
 set(web ${PROJECT_SOURCE_DIR}/web/dist)
 install(FILES ${web}/report.html ${web}/report.css ${web}/report.js ${web}/unpack.js DESTINATION share/glint/web/dist COMPONENT glint)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/shaders DESTINATION share/glint COMPONENT glint)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/labs ${PROJECT_SOURCE_DIR}/shaders DESTINATION share/glint COMPONENT glint)
 
 # The command's own help becomes manual pages and completions when it is installed, because only then it certainly exists.
 if(Python3_FOUND)

@@ -100,6 +100,7 @@ int main_of(int argc, char** argv) {
   add_plugin_option(app, plugin_files);
   add_run(app, session);
   add_bench(app, session);
+  add_lab(app, session);
   add_stats(app, session);
   add_report(app, session);
   add_characterize(app, session);

@@ -141,7 +141,7 @@ def readmes(root):
     listed = (root / "tests/README.md").read_text() if (root / "tests/README.md").exists() else ""
     folders = sorted(path.name for path in (root / "tests").iterdir() if path.is_dir() and path.name != "__pycache__")
     problems = [f"tests/README.md: does not name {folder}/" for folder in folders if f"`{folder}/`" not in listed]
-    for folder in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]:
+    for folder in LIBRARIES + ["apps/glint", "configs", "labs", "shaders", "python"]:
         readme = root / folder / "README.md"
         if not readme.exists():
             problems.append(f"{folder}: no README.md")
@@ -154,7 +154,7 @@ def doc_paths(root):
     """Checks that the paths that the docs name exist. A path is a `code` word with a slash in which only its folder must be ours."""
     tops = {p.name for p in root.iterdir()} - {"build", "out"}
     problems = []
-    for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + list((root / "docs/howto").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "shaders", "python"]]):
+    for path in sorted(list(root.glob("*.md")) + list((root / "docs").glob("*.md")) + list((root / "docs/howto").glob("*.md")) + [root / f / "README.md" for f in LIBRARIES + ["apps/glint", "configs", "labs", "shaders", "python"]]):
         if not path.exists():
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "base/diagnostics.h"
@@ -21,6 +22,32 @@ bool is_root(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path / "configs/mobile.toml", ignored) &&
          fs::is_directory(path / "shaders", ignored);
+}
+
+// Returns the names of the TOML files in a folder, sorted.
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Returns the path of a file of the folder by its name, or of a user's file. `what` and `kind` describe both
+// in the message when there is neither.
+std::string path_in(const std::string& folder, const std::string& name_or_path, std::string_view what,
+                    std::string_view kind) {
+  const std::vector<std::string> names = names_in(folder);
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
+    return folder + "/" + name_or_path + ".toml";
+  std::error_code error;
+  if (fs::is_regular_file(name_or_path, error)) return name_or_path;
+  const std::string guess = nearest(name_or_path, names);
+  throw UserError({},
+                  fmt::format("there is no {} '{}': neither {} ({}) nor a file", what, name_or_path, kind,
+                              fmt::join(names, ", ")),
+                  guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
 }
 
 }  // namespace
@@ -37,25 +64,19 @@ Resources Resources::find() {
 }
 
 std::vector<std::string> Resources::config_names() const {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(root_ + "/configs", error))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
+  return names_in(root_ + "/configs");
 }
 
 std::string Resources::config_path(const std::string& name_or_path) const {
-  const std::vector<std::string> names = config_names();
-  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
-    return root_ + "/configs/" + name_or_path + ".toml";
-  std::error_code error;
-  if (fs::is_regular_file(name_or_path, error)) return name_or_path;
-  const std::string guess = nearest(name_or_path, names);
-  throw UserError({},
-                  fmt::format("there is no configuration '{}': neither a preset ({}) nor a file",
-                              name_or_path, fmt::join(names, ", ")),
-                  guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
+  return path_in(root_ + "/configs", name_or_path, "configuration", "a preset");
+}
+
+std::vector<std::string> Resources::lab_names() const {
+  return names_in(root_ + "/labs");
+}
+
+std::string Resources::lab_path(const std::string& name_or_path) const {
+  return path_in(root_ + "/labs", name_or_path, "experiment", "one of Glint's");
 }
 
 std::string read_file(const std::string& path) {

@@ -21,6 +21,9 @@ class Resources {
   // nearest name when it is neither.
   std::string config_path(const std::string& name_or_path) const;
   std::vector<std::string> config_names() const;  // sorted
+  // The same for the experiments of `glint lab`.
+  std::string lab_path(const std::string& name_or_path) const;
+  std::vector<std::string> lab_names() const;  // sorted
 
   // Returns the folder of a built-in shader set; `folder` is its name in shaders/.
   std::string shader_dir(const std::string& folder) const { return root_ + "/shaders/" + folder; }

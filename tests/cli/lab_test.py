@@ -1,0 +1,115 @@
+# Tests `glint lab`: experiments, their arms, and the table beside the published effects.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: lab_test.py GLINT SOURCE_DIR [SUITE...]"""
+import csv
+import math
+
+from glint_case import ROOT, GlintTest, main
+
+SMALL = '''title = "{title}"
+source = "a test"
+config = "vulkan-sim-mobile"
+workloads = ["SHIP_SH", "WKND_SH"]
+size = "16x16"
+
+[[arm]]
+name = "base"
+
+[[arm]]
+name = "other"
+against = "base"
+set = ["{setting}"]
+published = {published}
+expected = [0.2, 5]
+figure = [{{ name = "nodes a ray", formula = "sum(rt.nodes) / sum(rt.rays)" }},
+          {{ name = "rays, ratio", formula = "sum(rt.rays)", ratio = true, expected = [1, 1] }}]
+'''
+
+
+class LabTest(GlintTest):
+    def lab(self, code, *arguments):
+        done = self.glint("lab", *arguments)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def rows(self, folder):
+        with open(self.folder / folder / "lab.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def stat(self, run, name):
+        with open(self.folder / run / "stats.csv", newline="") as file:
+            return next(float(row[1]) for row in csv.reader(file) if row[0] == name)
+
+    def experiment(self, setting="memory.l2.latency=300", published=0.5):
+        return self.write("mine.toml", SMALL.format(title="Fewer warps", setting=setting, published=published))
+
+
+class Files(LabTest):
+    def test_the_list_has_every_experiment_and_each_can_be_read(self):
+        listed = {line.split()[0] for line in self.lab(0).stdout.splitlines()}
+        self.assertEqual(listed, {path.stem for path in (ROOT / "labs").glob("*.toml")})
+
+    def test_mistakes_are_told_with_their_lines(self):
+        self.write("bad.toml", 'title = "x"\nsource = "y"\nconfig = "mobile"\n[[arm]]\nname = "A b"\npublished = 2\n'
+                               '[[arm]]\nname = "c"\nagainst = "zz"\nexpected = [2, 1]\nlest = 3\n')
+        self.expect(2, ["bad.toml:4", "small letters", "no 'against'", "bad.toml:10", "the smaller first", "did you mean 'least'?",
+                        "'zz', which is no arm before it"], "lab", "bad.toml")
+        self.expect(2, ["at least one [[arm]]"], "lab", self.write("none.toml", 'title = "x"\nsource = "y"\nconfig = "mobile"\n'))
+        self.expect(2, ["mine.toml:16:11: error: 'sum(rt.nodes) /' is not a formula"], "lab", self.write("mine.toml", SMALL.format(title="x", setting="rt.warps=1", published=1)
+                                                                   .replace("/ sum(rt.rays)", "/")))
+        self.expect(2, ["no experiment 'ttp62'", "did you mean 'ttp26'?"], "lab", "ttp62")
+        self.expect(2, ["has no arm 'turbo'", "stack_trend"], "lab", "ttp26", "--arms", "turbo")
+        self.expect(2, ["none of these workloads: SHIP_AO"], "lab", self.experiment(), "--workloads", "SHIP_AO")
+        self.expect(2, ["'other' runs WKND_AO", "'base' does not"], "lab", self.write("more.toml", SMALL.format(
+            title="x", setting="rt.warps=1", published=1).replace('against = "base"', 'against = "base"\nworkloads = ["WKND_AO"]')))
+        self.expect(2, ["rt.wraps"], "lab", self.experiment("rt.wraps=1"))
+        self.assertFalse((self.folder / "out/lab-ttp26").exists())
+
+
+class Runs(LabTest):
+    def test_speedups_are_quotients_of_cycles_and_their_mean_is_geometric(self):
+        text = self.lab(0, self.experiment()).stdout
+        rows = [row for row in self.rows("out/lab-mine") if not row["figure"]]
+        self.assertEqual([(row["arm"], row["workload"]) for row in rows],
+                         [("base", "SHIP_SH"), ("base", "WKND_SH"), ("other", "SHIP_SH"), ("other", "WKND_SH")])
+        speedups = []
+        for row in rows:
+            cycles = self.stat(f"out/lab-mine/{row['arm']}/{row['workload']}", "gpu.cycles")
+            self.assertEqual(float(row["cycles"]), cycles)
+            if row["arm"] == "other":
+                speedups.append(self.stat(f"out/lab-mine/base/{row['workload']}", "gpu.cycles") / cycles)
+                self.assertAlmostEqual(float(row["speedup"]), speedups[-1])
+        self.assertTrue(all(speedup != 1 for speedup in speedups))
+        self.assertIn(f"{math.exp(sum(map(math.log, speedups)) / 2):.3f}", text)
+        self.assertEqual(text.count(" as expected"), 2)
+        figures = {(row["workload"], row["figure"]): float(row["value"]) for row in self.rows("out/lab-mine") if row["figure"]}
+        self.assertEqual(figures["SHIP_SH", "rays, ratio"], 1)
+        self.assertGreater(figures["SHIP_SH", "nodes a ray"], 5)
+
+    def test_what_is_complete_is_not_run_again(self):
+        name = self.experiment()
+        self.lab(0, name, "--arms", "base")
+        before = (self.folder / "out/lab-mine/base/SHIP_SH/run.json").stat().st_mtime_ns
+        self.assertIn("2 of them complete", self.lab(0, name).stdout)
+        self.assertEqual((self.folder / "out/lab-mine/base/SHIP_SH/run.json").stat().st_mtime_ns, before)
+
+    def test_a_flipped_sign_fails_the_check_and_only_the_check(self):
+        self.assertIn("NOT as expected", self.lab(0, self.write("no.toml", SMALL.format(title="x", setting="memory.l2.latency=300", published=2)
+                                                                .replace("[0.2, 5]", "[4, 5]")), "--workloads", "SHIP_SH").stdout)
+        done = self.lab(1, self.experiment(published=2), "--check", "--workloads", "SHIP_SH")
+        self.assertIn("has not the published sign: other", done.stderr)
+
+
+class Effects(LabTest):
+    """The published effects keep their sign on a small set."""
+
+    def test_the_prefetcher_and_the_helpers_speed_up_a_ship(self):
+        for name, arm in (("ttp26", "stack_trend"), ("coop25", "cooperative")):
+            with self.subTest(name=name):
+                self.lab(0, name, "--arms", arm, "--workloads", "SHIP_PT", "--size", "32x32", "--check")
+                speedup = next(float(row["speedup"]) for row in self.rows(f"out/lab-{name}") if row["arm"] == arm)
+                self.assertGreater(speedup, 1.05)
+
+
+if __name__ == "__main__":
+    main()
