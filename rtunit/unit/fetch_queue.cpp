@@ -29,22 +29,24 @@ FetchQueue::FetchQueue(const Params& params, const mem::AddressSpace& memory, me
       l1_(l1),
       buffer_(buffer),
       stats_(stats),
-      scheduler_(params.scheduler.make({&stats})),
+      scheduler_(params.scheduler.make({&stats, params.warps})),
       coalescer_(params.coalescing.make({})),
       views_(params.warps),
       reads_(size_t(params.warps) * kLanes) {
   for (size_t i = reads_.size(); i-- > 0;) free_.push_back(uint32_t(i));
 }
 
-// The policy picks the warp. Model: among its lanes that want a read, the one with the lowest number is
-// served first.
+// The policy picks the warp, and perhaps the lane. Model: otherwise the lane with the lowest number among
+// those that want a read is served first.
 bool FetchQueue::choose(Cycle now) {
   if (is_full() || !buffer_.has_wanting_lanes() || !has_ready_warp(now)) return false;
-  const uint32_t picked = scheduler_->pick(views_);
+  const auto [picked, lane] = scheduler_->choose(views_, *this);
   GLINT_CHECK(picked < views_.size() && views_[picked].ready,
               "scheduler '{}' picked slot {}, which is not ready", scheduler_name_, picked);
   const BufferSlot& slot = buffer_[picked];
-  const auto first = size_t(std::countr_zero(slot.wanting));
+  const auto first = size_t(lane < 0 ? std::countr_zero(slot.wanting) : lane);
+  GLINT_CHECK(slot.wanting >> first & 1, "scheduler '{}' chose lane {} of slot {}, which wants no node",
+              scheduler_name_, first, picked);
   const Read& read = slot.read[first];
   const uint64_t partners = coalescer_->partners(picked, views_);
   sending_ = add(picked, partners ? lanes_wanting(slot, read.what) : LaneMask{1} << first, read);

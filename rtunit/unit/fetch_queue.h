@@ -37,7 +37,7 @@ class DemandListener {
   virtual void demanded(Address from, uint32_t bytes, Cycle now) = 0;
 };
 
-class FetchQueue final : public RequestSource {
+class FetchQueue final : public RequestSource, private WantedNodes {
  public:
   FetchQueue(const Params& params, const mem::AddressSpace& memory, mem::L1Port& l1, WarpBuffer& buffer,
              RtStats& stats);
@@ -89,6 +89,8 @@ class FetchQueue final : public RequestSource {
   }
 
  private:
+  LaneMask lanes(uint32_t warp) const override { return buffer_[warp].wanting; }
+  const Fetch& node(uint32_t warp, int lane) const override { return buffer_[warp].read[size_t(lane)].what; }
   bool has_ready_warp(Cycle now);
   void prepare_request();
   uint32_t add(uint32_t slot, LaneMask lanes, const Read& read);

@@ -1,6 +1,7 @@
 // Tests that every registered ray scheduler keeps the promises of rtunit/ray_scheduler.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <cstdint>
 
 #include "base/registry.h"
 #include "rtunit/ray_scheduler.h"
@@ -10,13 +11,22 @@
 namespace glint::rt::test {
 namespace {
 
+// Lets each lane want one of a few nodes.
+struct RandomNodes final : WantedNodes {
+  std::array<LaneMask, 8> wanting{};
+  std::array<std::array<Fetch, kLanes>, 8> nodes;
+  LaneMask lanes(uint32_t warp) const override { return wanting[warp]; }
+  const Fetch& node(uint32_t warp, int lane) const override { return nodes[warp][size_t(lane)]; }
+};
+
 TEST_CASE("every scheduler picks a ready warp, repeats itself exactly and serves all") {
   const auto names = Registry<RayScheduler>::names();
   REQUIRE(names.size() >= 2);
   for (const std::string& name : names) {
     CAPTURE(name);
     const auto& entry = Registry<RayScheduler>::instance().entry(name);
-    const auto a = entry.make_default({}), b = entry.make_default({});
+    const auto a = entry.make_default({nullptr, 8}), b = entry.make_default({nullptr, 8});
+    RandomNodes wanted;
     Random random{5};
     std::vector<WarpView> warps(8);
     uint64_t age = 0;
@@ -24,19 +34,25 @@ TEST_CASE("every scheduler picks a ready warp, repeats itself exactly and serves
     for (WarpView& w : warps) w.age = age++;
     for (int round = 0; round < 5000; ++round) {
       bool any = false;
-      for (WarpView& w : warps) {
+      for (size_t i = 0; i < warps.size(); ++i) {
+        WarpView& w = warps[i];
         w.ready = random.below(3) == 0;
         w.lanes_wanting = w.ready ? 1 + random.below(32) : 0;
+        wanted.wanting[i] = w.lanes_wanting ? kAllLanes >> (32 - w.lanes_wanting) : 0;
+        for (Fetch& node : wanted.nodes[i]) node = {64 * (1 + random.below(40)), 64, NodeKind::Internal};
         any |= w.ready;
       }
-      const uint32_t pick = a->pick(warps);
-      REQUIRE(pick == b->pick(warps));
+      const auto [pick, lane] = a->choose(warps, wanted);
+      const RayScheduler::Choice again = b->choose(warps, wanted);
+      REQUIRE(pick == again.warp);
+      REQUIRE(lane == again.lane);
       if (!any) {
         REQUIRE(pick == RayScheduler::kNone);
         continue;
       }
       REQUIRE(pick < warps.size());
       REQUIRE(warps[pick].ready);
+      REQUIRE((lane < 0 || (wanted.wanting[pick] >> lane & 1)));
       ++served[pick];
       if (random.below(10) == 0) warps[pick].age = age++;  // it left, another came
     }
