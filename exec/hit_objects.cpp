@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <utility>
+#include <vector>
 
 #include "exec/hit_records.h"
 #include "exec/numbered.h"

@@ -3,7 +3,7 @@
 #include "memsys/address_space.h"
 
 #include <fmt/format.h>
-#include <new>
+#include <utility>
 
 #include "base/check.h"
 #include "base/diagnostics.h"
@@ -12,7 +12,6 @@
 namespace glint::mem {
 namespace {
 
-constexpr std::align_val_t kHostAlignment{64};
 constexpr uint64_t kSlot = uint64_t{1} << AddressSpace::kShift;
 constexpr uint64_t kPhysicalAlignment = 256;
 
@@ -22,25 +21,18 @@ uint64_t slots_of(uint64_t bytes) {
 
 }  // namespace
 
-AddressSpace::~AddressSpace() {
-  for (size_t i = 1; i < allocations_.size(); ++i)
-    // A continuation of a large allocation points into the block of its first slot.
-    if (i == 1 || allocations_[i].data != allocations_[i - 1].data + kSlot ||
-        allocations_[i - 1].bytes <= kSlot)
-      ::operator delete[](allocations_[i].data, kHostAlignment);
+Address AddressSpace::allocate(std::string name, uint64_t bytes) {
+  return adopt(std::move(name), HostBlock(bytes));
 }
 
-Address AddressSpace::allocate(std::string name, uint64_t bytes) {
-  // The host's bytes are whole cache lines, so that a line can be copied even where only a part is used.
-  const size_t line = size_t(kHostAlignment),
-               host_bytes = size_t(bytes == 0 ? line : (bytes + line - 1) / line * line);
-  auto* data = static_cast<std::byte*>(::operator new[](host_bytes, kHostAlignment));
-  std::memset(data, 0, host_bytes);
+Address AddressSpace::adopt(std::string name, HostBlock block) {
   const Address address = Address(allocations_.size()) << kShift;
+  const uint64_t bytes = block.size();
   // Slot i of a large allocation spans from its own start to the end of the allocation, so that find() needs
   // no special case for ranges that cross a multiple of 4 GiB.
   for (uint64_t i = 0; i < slots_of(bytes); ++i)
-    allocations_.push_back({name, bytes - i * kSlot, next_physical_ + i * kSlot, data + i * kSlot});
+    allocations_.push_back({name, bytes - i * kSlot, next_physical_ + i * kSlot, block.data() + i * kSlot});
+  blocks_.push_back(std::move(block));
   reserve(bytes);
   return address;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "memsys/host_block.h"
 
 namespace glint::mem {
 
@@ -29,13 +30,14 @@ class AddressSpace {
   };
 
   AddressSpace() : allocations_(1) {}
-  ~AddressSpace();
   AddressSpace(const AddressSpace&) = delete;
   AddressSpace& operator=(const AddressSpace&) = delete;
 
   // Allocates bytes that are 0 and aligned to 64 bytes on the host. A size past 4 GiB takes several
   // consecutive allocation numbers.
   Address allocate(std::string name, uint64_t bytes);
+  // Takes bytes as an allocation, as they are.
+  Address adopt(std::string name, HostBlock block);
   // Reserves physical bytes for the machine, which no program can address. Returns the address of the first.
   // Throws UserError when physical memory becomes larger than kMaxPhysicalBytes.
   Address reserve(uint64_t bytes);
@@ -68,6 +70,7 @@ class AddressSpace {
 
  private:
   std::vector<Allocation> allocations_;
+  std::vector<HostBlock> blocks_;  // what the allocations point into
   Address next_physical_ = 0;
 };
 

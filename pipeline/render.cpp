@@ -76,8 +76,9 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
   return result;
 }
 
-RenderResult render(const RenderJob& job) {
-  SceneWorld scene(job);
+namespace {
+
+RenderResult render_world(SceneWorld& scene, const RenderJob& job) {
   scene.world.on_fault = job.on_fault;
   RenderResult result =
       run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.watch, job.observe);
@@ -90,6 +91,18 @@ RenderResult render(const RenderJob& job) {
   result.picture.base = result.picture.address_of({scene.world.first_id[0], scene.world.first_id[1]});
   result.accumulation = scene.read_image(SceneWorld::kAccumulation);
   return result;
+}
+
+}  // namespace
+
+RenderResult render(const RenderJob& job) {
+  SceneWorld scene(job);
+  return render_world(scene, job);
+}
+
+RenderResult render_and_drain(RenderJob& job) {
+  SceneWorld scene(job, SceneWorld::Drain{job.scene});
+  return render_world(scene, job);
 }
 
 }  // namespace glint::pipeline

@@ -105,4 +105,8 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
 // progress.
 RenderResult render(const RenderJob& job);
 
+// Renders a frame in less memory: it frees the vertices, indices and texels of job.scene once they are
+// uploaded.
+RenderResult render_and_drain(RenderJob& job);
+
 }  // namespace glint::pipeline

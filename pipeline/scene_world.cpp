@@ -8,13 +8,19 @@
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/check.h"
 #include "base/host_threads.h"
 #include "base/ordered_work.h"
+#include "base/parallel_ranges.h"
 #include "pipeline/binding_table.h"
 #include "pipeline/software_traversal.h"
 #include "pipeline/structure_cache.h"
@@ -38,7 +44,8 @@ enum Binding : uint32_t {
   kSpheres
 };
 
-constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have record 0
+constexpr uint64_t kLeastLarge = 50'000;  // primitives: a smaller model gains nothing from several threads
+constexpr uint32_t kSphereRecord = 1;     // hit record of procedural models; triangles have record 0
 
 rt::Bounds sphere_bounds(const Model& model) {
   rt::Bounds box;
@@ -49,23 +56,34 @@ rt::Bounds sphere_bounds(const Model& model) {
   return box;
 }
 
-// Describes a model to the builder. `box` becomes the bounds of a model that is procedural.
-rt::BottomLevel bottom_level_of(const Model& model, rt::Bounds& box) {
-  rt::Geometry geometry;
-  if (model.is_procedural()) {
-    box = sphere_bounds(model);
-    geometry.aabbs = {&box, 1};
-    geometry.opaque = true;
-  } else {
-    geometry.positions = std::as_bytes(std::span(model.vertices));
-    geometry.stride = sizeof(scenes::Vertex);
-    geometry.indices = model.indices;
-    geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
-    geometry.no_duplicate_any_hit = true;
-  }
-  rt::BottomLevel level;
-  level.geometries.push_back(geometry);
-  return level;
+uint64_t num_primitives(const Model& model, std::span<const uint32_t> indices) {
+  return model.is_procedural() ? 1 : indices.size() / 3;
+}
+
+// Empties a vector and frees its memory, which clear() and `= {}` would keep.
+template <class Value>
+void release(std::vector<Value>& values) {
+  std::vector<Value>().swap(values);
+}
+
+// Gives the host the pages that were freed between allocations that are still there. The C library keeps
+// them.
+void give_back_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+std::string name_of(const Model& model) {
+  return "bottom level " + model.name;
+}
+
+template <class Value>
+void copy(const std::vector<Value>& from, Value* to, uint32_t threads) {
+  constexpr size_t kRange = 65536;  // values that a thread copies at a time
+  parallel_ranges(from.size(), kRange, threads, [&](size_t begin, size_t end) {
+    std::copy(from.data() + begin, from.data() + end, to + begin);
+  });
 }
 
 }  // namespace
@@ -91,7 +109,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   return out;
 }
 
-SceneWorld::SceneWorld(const RenderJob& job) {
+SceneWorld::SceneWorld(const RenderJob& job, scenes::Scene* drain) {
   world.memory = &memory_;
   world.prints = job.prints;
   world.constant_bank.resize(isa::kConstantBankBytes);
@@ -102,8 +120,8 @@ SceneWorld::SceneWorld(const RenderJob& job) {
   world.first_id = {job.frame.crop_x, job.frame.crop_y, 0};
   world.whole_size = {job.frame.whole_width(), job.frame.whole_height(), 1};
   link_shaders(job);
-  upload_geometry(job.scene);
-  upload_images(job);
+  upload_geometry(job, drain);
+  upload_images(job, drain);
   const std::vector<std::byte> frame = scenes::uniform_block(job.scene, job.workload, job.frame);
   bind(kFrame, upload("binding 3 (frame)", frame.data(), frame.size()), frame.size());
   build_structures(job);
@@ -134,29 +152,49 @@ void SceneWorld::bind(uint32_t binding, uint64_t address_or_handle, uint64_t byt
   write_descriptor(world, {0, binding}, address_or_handle, bytes_or_count);
 }
 
-void SceneWorld::upload_geometry(const scenes::Scene& scene) {
-  std::vector<scenes::Vertex> vertices;
-  std::vector<uint32_t> indices;
+template <class Value>
+std::span<Value> SceneWorld::bind_new(uint32_t binding, const char* name, uint64_t count) {
+  const uint64_t bytes = count * sizeof(Value);
+  const Address address =
+      memory_.allocate(fmt::format("binding {} ({})", binding, name), std::max<uint64_t>(bytes, 4));
+  bind(binding, address, bytes);
+  return memory_.view<Value>(address, count);
+}
+
+void SceneWorld::upload_geometry(const RenderJob& job, scenes::Scene* drain) {
+  const scenes::Scene& scene = job.scene;
   std::vector<std::array<uint32_t, 2>> offsets;  // first index and first vertex of each model
   std::vector<scenes::Vec4> spheres;
+  uint64_t num_vertices = 0, num_indices = 0;
   for (const Model& model : scene.models) {
-    offsets.push_back({uint32_t(indices.size()), uint32_t(vertices.size())});
+    offsets.push_back({uint32_t(num_indices), uint32_t(num_vertices)});
     spheres.push_back(model.is_procedural() ? scenes::Vec4(model.center, model.radius) : scenes::Vec4(0));
-    vertices.insert(vertices.end(), model.vertices.begin(), model.vertices.end());
-    indices.insert(indices.end(), model.indices.begin(), model.indices.end());
+    num_vertices += model.vertices.size(), num_indices += model.indices.size();
   }
+  const std::span vertices = bind_new<scenes::Vertex>(kVertices, "vertices", num_vertices);
+  const std::span indices = bind_new<uint32_t>(kIndices, "indices", num_indices);
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const Model& model = scene.models[i];
+    const auto [first_index, first_vertex] = offsets[i];
+    uploaded_.push_back({vertices.subspan(first_vertex, model.vertices.size()),
+                         indices.subspan(first_index, model.indices.size())});
+    copy(model.vertices, vertices.data() + first_vertex, host_threads(job.threads));
+    copy(model.indices, indices.data() + first_index, host_threads(job.threads));
+    if (!drain) continue;
+    release(drain->models[i].vertices);
+    release(drain->models[i].indices);
+  }
+  if (drain) give_back_memory();
   auto buffer = [&](uint32_t binding, const char* name, const auto& values) {
-    const uint64_t bytes = values.size() * sizeof(values[0]);
-    bind(binding, upload(fmt::format("binding {} ({})", binding, name), values.data(), bytes), bytes);
+    const std::span to = bind_new<std::decay_t<decltype(values[0])>>(binding, name, values.size());
+    std::copy(values.begin(), values.end(), to.begin());
   };
-  buffer(kVertices, "vertices", vertices);
-  buffer(kIndices, "indices", indices);
   buffer(kMaterials, "materials", scene.materials);
   buffer(kOffsets, "offsets", offsets);
   buffer(kSpheres, "spheres", spheres);
 }
 
-void SceneWorld::upload_images(const RenderJob& job) {
+void SceneWorld::upload_images(const RenderJob& job, scenes::Scene* drain) {
   auto add = [&](std::string name, exec::ImageView::Format format, uint32_t width, uint32_t height,
                  const void* texels) {
     const uint64_t bytes = uint64_t(width) * height * exec::info_of(format).bytes;
@@ -173,33 +211,62 @@ void SceneWorld::upload_images(const RenderJob& job) {
   // A scene without textures binds one white texel, as the original application does.
   static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
   const uint64_t first = world.images.size();
-  for (const scenes::Texture& texture : job.scene.textures) {
+  for (size_t i = 0; i < job.scene.textures.size(); ++i) {
+    const scenes::Texture& texture = job.scene.textures[i];
     add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width,
         texture.height, texture.rgba.data());
     if (texture.repeat) world.images.back().sampler.wrap.fill(exec::Wrap::Repeat);
+    if (drain) release(drain->textures[i].rgba);
   }
   if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
   bind(kTextures, first, world.images.size() - first);
 }
 
+rt::EncodedBottom SceneWorld::encode_bottom(const RenderJob& job, size_t index, uint32_t threads) const {
+  const Model& model = job.scene.models[index];
+  rt::Geometry geometry;
+  rt::Bounds box;
+  if (model.is_procedural()) {
+    box = sphere_bounds(model);
+    geometry.aabbs = {&box, 1};
+    geometry.opaque = true;
+  } else {
+    geometry.positions = std::as_bytes(uploaded_[index].vertices);
+    geometry.stride = sizeof(scenes::Vertex);
+    geometry.indices = uploaded_[index].indices;
+    geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
+    geometry.no_duplicate_any_hit = true;
+  }
+  const rt::BottomLevel level{{geometry}};
+  const std::string name = name_of(model);
+  return job.structure_cache ? job.structure_cache->encode(name, level, job.gpu.bvh, threads)
+                             : rt::encode_bottom(name, level, job.gpu.bvh, threads);
+}
+
 // Builds the bottom levels on all threads, and places them in the order of the models, so that addresses do
-// not depend on threads.
+// not depend on threads. The largest models come first, each on all threads, because one thread would still
+// build them when the others have nothing left to do.
 std::vector<rt::StructureInfo> SceneWorld::build_bottoms(const RenderJob& job) {
   const std::vector<Model>& models = job.scene.models;
-  const auto name_of = [](const Model& model) { return "bottom level " + model.name; };
+  const uint32_t threads = host_threads(job.threads);
+  uint64_t all = 0;
+  for (size_t i = 0; i < models.size(); ++i) all += num_primitives(models[i], uploaded_[i].indices);
+  std::map<size_t, rt::EncodedBottom> large;
+  for (size_t i = 0; threads > 1 && i < models.size(); ++i)
+    if (const uint64_t primitives = num_primitives(models[i], uploaded_[i].indices);
+        primitives > kLeastLarge && primitives > all / (4 * threads))
+      large.emplace(i, encode_bottom(job, i, threads));
   std::vector<rt::StructureInfo> bottoms;
-  OrderedWork<rt::EncodedBottom> work(models.size(), host_threads(job.threads));
+  OrderedWork<rt::EncodedBottom> work(models.size(), threads);
   work.run(
       [&](size_t i) {
-        rt::Bounds box;
-        const rt::BottomLevel level = bottom_level_of(models[i], box);
-        return job.structure_cache ? job.structure_cache->encode(name_of(models[i]), level, job.gpu.bvh)
-                                   : rt::encode_bottom(name_of(models[i]), level, job.gpu.bvh);
+        const auto built = large.find(i);
+        return built != large.end() ? std::move(built->second) : encode_bottom(job, i, 1);
       },
       [&](size_t i, rt::EncodedBottom&& bottom) {
-        bottoms.push_back(rt::place(memory_, name_of(models[i]), bottom));
+        bottoms.push_back(rt::place(memory_, name_of(models[i]), std::move(bottom)));
         structures.procedurals += models[i].is_procedural();
-        structures.triangles += models[i].is_procedural() ? 0 : models[i].indices.size() / 3;
+        structures.triangles += models[i].is_procedural() ? 0 : uploaded_[i].indices.size() / 3;
         structures.bytes += bottoms.back().bytes;
         structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
       });

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,12 @@ WorkloadShaders compile_workload(const RenderJob& job);
 // Holds memory, images and records of one launch. It cannot be moved, because `world` points into it.
 class SceneWorld {
  public:
-  explicit SceneWorld(const RenderJob& job);
+  // Names a job's own scene, whose models and textures lose their contents once these are uploaded.
+  struct Drain {
+    scenes::Scene& scene;
+  };
+  explicit SceneWorld(const RenderJob& job) : SceneWorld(job, nullptr) {}
+  SceneWorld(const RenderJob& job, const Drain& drain) : SceneWorld(job, &drain.scene) {}
   SceneWorld(const SceneWorld&) = delete;
   SceneWorld& operator=(const SceneWorld&) = delete;
 
@@ -36,16 +42,27 @@ class SceneWorld {
   static constexpr uint32_t kAccumulation = 0, kPicture = 1;  // image handles
 
  private:
-  void upload_geometry(const scenes::Scene& scene);
-  void upload_images(const RenderJob& job);
+  // Holds what was uploaded of a model. It is read there once the model itself may be empty.
+  struct Uploaded {
+    std::span<const scenes::Vertex> vertices;
+    std::span<const uint32_t> indices;
+  };
+
+  SceneWorld(const RenderJob& job, scenes::Scene* drain);
+  void upload_geometry(const RenderJob& job, scenes::Scene* drain);
+  rt::EncodedBottom encode_bottom(const RenderJob& job, size_t model, uint32_t threads) const;
+  void upload_images(const RenderJob& job, scenes::Scene* drain);
   std::vector<rt::StructureInfo> build_bottoms(const RenderJob& job);
   void build_structures(const RenderJob& job);
   void link_shaders(const RenderJob& job);
   void bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count);
+  template <class Value>
+  std::span<Value> bind_new(uint32_t binding, const char* name, uint64_t count);  // a buffer of zeros
   Address upload(const std::string& name, const void* data, uint64_t bytes);
 
   mem::AddressSpace memory_;
-  std::set<uint32_t> bound_;  // bindings of set 0
+  std::vector<Uploaded> uploaded_;  // of each model
+  std::set<uint32_t> bound_;        // bindings of set 0
   exec::Image image_;
 };
 

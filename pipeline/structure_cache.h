@@ -33,7 +33,7 @@ class StructureCache {
 
   // Returns the same bytes as rt::encode_bottom.
   rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input,
-                           const rt::BuildOptions& options);
+                           const rt::BuildOptions& options, uint32_t threads = 1);
   // Returns the counts. No encode() may be under way.
   const Counts& counts() const { return counts_; }
 

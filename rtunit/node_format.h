@@ -10,9 +10,9 @@
 #include <memory>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "base/registry.h"
+#include "memsys/host_block.h"
 #include "rtunit/structure/structure.h"
 
 namespace glint::rt {
@@ -25,13 +25,14 @@ inline constexpr uint32_t kMaxWidth = 16;
 struct BuildTree {
   struct Node {
     Bounds bounds;
+    uint32_t first_child = 0;  // first index in `children`, for internal nodes
+    uint32_t leaf_block = 0;   // blocks from the start of leaf_bytes, for leaves
     NodeKind kind = NodeKind::Internal;
-    uint32_t first_child = 0, num_children = 0;  // first index in `children`, for internal nodes
-    uint32_t leaf_block = 0;                     // blocks from the start of leaf_bytes, for leaves
+    uint8_t num_children = 0;
   };
-  std::vector<Node> nodes;
-  std::vector<uint32_t> children;  // indices into nodes
-  std::vector<std::byte> leaf_bytes;
+  mem::HostArray<Node> nodes;
+  mem::HostArray<uint32_t> children;  // indices into nodes
+  mem::HostBlock leaf_bytes;
 };
 
 // Describes a child as it was found in encoded bytes. Validation and tools use it, the traversal does not.
@@ -45,7 +46,7 @@ struct DecodedChild {
 //    is left zero.
 //  - Every decoded box contains the box that was encoded; children keep their order.
 //  - Leaves lie at multiples of kBlockBytes, as BuildTree has them.
-//  - The same tree gives the same bytes.
+//  - The same tree gives the same bytes, on any number of threads.
 class NodeFormat {
  public:
   static constexpr PolicyKind kKind{"bvh.format", "rtunit/formats"};
@@ -56,7 +57,7 @@ class NodeFormat {
   virtual uint32_t width() const = 0;
   // Returns the bytes of an internal node, which a ray fetches whole. They are a multiple of kBlockBytes.
   virtual uint32_t node_bytes() const = 0;
-  virtual std::vector<std::byte> encode(const BuildTree& tree) const = 0;
+  virtual mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const = 0;
   // Writes the children of the internal node whose bytes start at `node` to `out`, which has room for width()
   // of them. Returns their number.
   virtual uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const = 0;

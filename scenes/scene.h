@@ -114,6 +114,7 @@ struct LoadOptions {
   bool instancing = false;  // Models that are affine copies of an earlier one become instances of it.
   // It is called while a scene is loaded or generated, and may be empty.
   std::function<void(double fraction)> progress = {};
+  uint32_t threads = 1;  // threads of the host that read large meshes; they do not show in the scene
 };
 
 struct SceneInfo {

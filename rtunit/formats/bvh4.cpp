@@ -24,7 +24,9 @@ class Bvh4Format final : public NodeFormat {
   FormatId id() const override { return FormatId::Bvh4; }
   uint32_t width() const override { return Bvh4::kWidth; }
   uint32_t node_bytes() const override { return Bvh4::kNodeBytes; }
-  std::vector<std::byte> encode(const BuildTree& tree) const override { return Bvh4::encode(tree); }
+  mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const override {
+    return Bvh4::encode(tree, threads);
+  }
   uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const override {
     return Bvh4::decode(node, out);
   }

@@ -26,9 +26,9 @@ class Bvh6Format final : public NodeFormat {
   uint32_t width() const override { return Bvh6::kWidth; }
   uint32_t node_bytes() const override { return Bvh6::kNodeBytes; }
 
-  std::vector<std::byte> encode(const BuildTree& tree) const override {
+  mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const override {
     const Layout layout = mixed_layout(tree, Bvh6::kNodeBytes);
-    return Bvh6::encode(tree, layout, [&](Bvh6::Node& node, std::span<const uint32_t> children) {
+    return Bvh6::encode(tree, layout, threads, [&](Bvh6::Node& node, std::span<const uint32_t> children) {
       if (!children.empty()) node.first_block = layout.block[children[0]];
     });
   }

@@ -27,9 +27,9 @@ class Bvh8Format final : public NodeFormat {
   uint32_t width() const override { return Bvh8::kWidth; }
   uint32_t node_bytes() const override { return Bvh8::kNodeBytes; }
 
-  std::vector<std::byte> encode(const BuildTree& tree) const override {
+  mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const override {
     const Layout layout = split_layout(tree, Bvh8::kNodeBytes);
-    return Bvh8::encode(tree, layout, [&](Bvh8::Node& node, std::span<const uint32_t> children) {
+    return Bvh8::encode(tree, layout, threads, [&](Bvh8::Node& node, std::span<const uint32_t> children) {
       for (const uint32_t index : children) {
         uint32_t& first = tree.nodes[index].kind == NodeKind::Internal ? node.first_node : node.first_leaf;
         if (first == 0) first = layout.block[index];

@@ -60,23 +60,20 @@ struct FloatBoxes {
     return mask_of(t_near <= t_far) & ((1u << count) - 1);
   }
 
-  static std::vector<std::byte> encode(const BuildTree& tree) {
+  static mem::HostBlock encode(const BuildTree& tree, uint32_t threads) {
     const Layout layout = mixed_layout(tree, kNodeBytes);
-    std::vector<std::byte> out = bytes_with_leaves(tree, layout);
-    for (size_t n = 0; n < tree.nodes.size(); ++n) {
-      if (tree.nodes[n].kind != NodeKind::Internal) continue;
+    return encoded(tree, layout, threads, [&](const BuildTree::Node& from) {
       Node node;
       int i = 0;
-      for (uint32_t index : children_of(tree, tree.nodes[n])) {
+      for (uint32_t index : children_of(tree, from)) {
         const BuildTree::Node& child = tree.nodes[index];
         node.child[i] = node_ref(layout.block[index], child.kind);
         for (size_t a = 0; a < 3; ++a)
           node.low[a][i] = child.bounds.low[a], node.high[a][i] = child.bounds.high[a];
         ++i;
       }
-      std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &node, sizeof node);
-    }
-    return out;
+      return node;
+    });
   }
 
   static uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) {

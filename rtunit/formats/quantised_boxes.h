@@ -1,12 +1,12 @@
 // Tests, writes and decodes nodes with boxes in 8 bits per plane, for all formats of that kind.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <vector>
 
 #include "rtunit/formats/quantise.h"
 #include "rtunit/intersection/box_test.h"
@@ -72,28 +72,28 @@ struct QuantisedBoxes {
 
   // Returns a node of the tree without its references.
   static auto boxes_of(const BuildTree& tree, const BuildTree::Node& from) {
-    const std::vector<Bounds> boxes = bounds_of_children(tree, from);
+    std::array<Bounds, kPlanes> bounds;
     typename Format::Node node;
+    for (uint32_t index : children_of(tree, from)) {
+      bounds[node.num_children] = tree.nodes[index].bounds;
+      node.kind[node.num_children++] = uint8_t(tree.nodes[index].kind);
+    }
     Grid grid;
+    const std::span boxes(bounds.data(), node.num_children);
     for (size_t a = 0; a < 3; ++a) quantise(boxes, a, grid, {node.low[a], node.high[a]});
     node.origin = grid.origin;
     node.exponent = grid.exponent;
-    for (uint32_t index : children_of(tree, from))
-      node.kind[node.num_children++] = uint8_t(tree.nodes[index].kind);
     return node;
   }
 
   // Returns the bytes of the whole structure. It calls link(node, children) to set a node's references.
   template <class Link>
-  static std::vector<std::byte> encode(const BuildTree& tree, const Layout& layout, Link link) {
-    std::vector<std::byte> out = bytes_with_leaves(tree, layout);
-    for (size_t n = 0; n < tree.nodes.size(); ++n) {
-      if (tree.nodes[n].kind != NodeKind::Internal) continue;
-      typename Format::Node node = boxes_of(tree, tree.nodes[n]);
-      link(node, children_of(tree, tree.nodes[n]));
-      std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes], &node, sizeof node);
-    }
-    return out;
+  static mem::HostBlock encode(const BuildTree& tree, const Layout& layout, uint32_t threads, Link link) {
+    return encoded(tree, layout, threads, [&](const BuildTree::Node& from) {
+      typename Format::Node node = boxes_of(tree, from);
+      link(node, children_of(tree, from));
+      return node;
+    });
   }
 
   static uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) {

@@ -71,12 +71,13 @@ struct StructureInfo {
 // not set.
 struct EncodedBottom {
   StructureInfo info;
-  std::vector<std::byte> bytes;
+  mem::HostBlock bytes;
 };
-// Throws UserError when an index is out of range or the tree is too deep for the ray stack.
+// Encodes a bottom level on up to `threads` threads, which do not show in the bytes. Throws UserError when an
+// index is out of range or the tree is too deep for the ray stack.
 EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input,
-                            const BuildOptions& options = {});
-StructureInfo place(mem::AddressSpace& memory, const std::string& name, const EncodedBottom& bottom);
+                            const BuildOptions& options = {}, uint32_t threads = 1);
+StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedBottom bottom);
 
 // Encodes a bottom level and places it in memory.
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,

@@ -1,91 +1,212 @@
-// Calls Embree's builder on one thread and flattens what it returns.
+// Calls Embree's builder and flattens what it returns.
 // SPDX-License-Identifier: Apache-2.0
 #include "rtunit/structure/build_tree.h"
 
 #if __has_include(<embree4/rtcore.h>)  // Ubuntu 24.04 has version 4. Building is the same in both.
 #include <cstdint>
 #include <embree4/rtcore.h>
-#include <vector>
 #else
 #include <embree3/rtcore.h>
 #endif
 
+#include <cstddef>
+#include <fmt/format.h>
 #include <limits>
+#include <vector>
 
 #include "base/check.h"
+#include "base/parallel_ranges.h"
 
 namespace glint::rt {
 namespace {
 
 constexpr uint32_t kMaxDepth = 60;  // binary levels: the builder's own limit for skewed input
 
-// Holds a node in the builder's memory. It is a leaf when `num_children` is 0.
-struct RawNode {
-  uint32_t num_children = 0, item = 0;
-  RawNode* child[kMaxWidth]{};
+static_assert(sizeof(BuildItem) == sizeof(RTCBuildPrimitive) &&
+              alignof(BuildItem) == alignof(RTCBuildPrimitive));
+static_assert(offsetof(BuildItem, high) == offsetof(RTCBuildPrimitive, upper_x));
+static_assert(offsetof(BuildItem, leaf) == offsetof(RTCBuildPrimitive, primID));
+
+struct RawNode;
+
+// Refers to a node in the builder's memory, or to an item, which is a leaf.
+class RawChild {
+ public:
+  explicit RawChild(const void* from) : from_(reinterpret_cast<uintptr_t>(from)) {}
+  // Items have an address that is a multiple of 32, and the builder's nodes of 8, so the lowest bit is free.
+  static void* leaf(const RTCBuildPrimitive* item) {
+    return reinterpret_cast<void*>(reinterpret_cast<uintptr_t>(item) | 1);
+  }
+  bool is_leaf() const { return from_ & 1; }
+  const BuildItem& item() const { return *reinterpret_cast<const BuildItem*>(from_ & ~uintptr_t{1}); }
+  const RawNode& node() const { return *reinterpret_cast<const RawNode*>(from_); }
+  uint32_t num_below() const;
+
+ private:
+  uintptr_t from_;
 };
 
+// Holds a node in the builder's memory. The builder allots as many children as the node has.
+struct RawNode {
+  uint32_t num_children = 0;
+  uint32_t num_below = 0;  // nodes and leaves below it
+  const void* child[1];
+
+  RawChild operator[](uint32_t i) const { return RawChild(child[i]); }
+};
+
+uint32_t RawChild::num_below() const {
+  return is_leaf() ? 0 : node().num_below;
+}
+
 void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
-  auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), alignof(RawNode))) RawNode;
+  const size_t bytes = offsetof(RawNode, child) + count * sizeof(void*);
+  auto* node = static_cast<RawNode*>(rtcThreadLocalAlloc(allocator, bytes, alignof(RawNode)));
   node->num_children = count;
   return node;
 }
-void set_children(void* node, void** children, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i)
-    static_cast<RawNode*>(node)->child[i] = static_cast<RawNode*>(children[i]);
+void set_children(void* to, void** children, unsigned count, void*) {
+  auto* node = static_cast<RawNode*>(to);
+  node->num_below = count;
+  for (unsigned i = 0; i < count; ++i) {
+    node->child[i] = children[i];
+    node->num_below += RawChild(children[i]).num_below();
+  }
 }
 void set_bounds(void*, const RTCBounds**, unsigned, void*) {
-}  // } // recomputed from the leaves below
-void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count,
-                  void*) {
+}  // recomputed from the leaves below
+void* create_leaf(RTCThreadLocalAllocator, const RTCBuildPrimitive* primitives, size_t count, void* user) {
   GLINT_CHECK_EQ(count, size_t{1});
-  auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), alignof(RawNode))) RawNode;
-  node->item = primitives[0].primID;
-  return node;
+  const auto& items = *static_cast<const std::span<BuildItem>*>(user);
+  const auto* item = reinterpret_cast<const BuildItem*>(primitives);
+  GLINT_CHECK(item >= items.data() && item < items.data() + items.size(), "a leaf of {} is none of them",
+              items.size());
+  return RawChild::leaf(primitives);
 }
 
-// Numbers nodes in preorder: a node's index is below its children's.
-void flatten(const RawNode* root, std::span<const BuildItem> items, BuildTree& tree) {
+// Numbers nodes and copies them into a tree.
+class Flattener {
+ public:
+  explicit Flattener(BuildTree& tree) : tree_(tree) {}
+
+  void run(const RawNode& root, uint32_t threads) {
+    tree_.nodes = mem::HostArray<BuildTree::Node>(size_t{1} + root.num_below);
+    tree_.children = mem::HostArray<uint32_t>(root.num_below);
+    // The tree is cut at subtrees that one thread flattens. Where it is cut does not depend on threads.
+    std::vector<Work> top{{&root, 0, 1}}, parts;
+    std::vector<uint32_t> above;  // the nodes above the parts, parents first
+    while (!top.empty()) {
+      const Work work = top.back();
+      top.pop_back();
+      if (work.from->num_below <= kPart) {
+        parts.push_back(work);
+        continue;
+      }
+      above.push_back(work.to);
+      add_children(work, top);
+    }
+    parallel_ranges(parts.size(), 1, threads, [&](size_t i, size_t) { flatten(parts[i]); });
+    for (size_t i = above.size(); i-- > 0;) set_bounds_of(above[i]);
+  }
+
+ private:
+  static constexpr uint32_t kPart = 8192;  // nodes below the largest part
+
   struct Work {
     const RawNode* from;
     uint32_t to;
+    uint32_t below;  // number of the first node below it
   };
-  std::vector<Work> stack{{root, 0}};
-  tree.nodes.emplace_back();
-  while (!stack.empty()) {
-    const Work work = stack.back();
-    stack.pop_back();
-    if (work.from->num_children == 0) {
-      const BuildItem& item = items[work.from->item];
-      tree.nodes[work.to] = {item.bounds, item.kind, 0, 0, item.leaf_block};
-      continue;
-    }
-    tree.nodes[work.to].first_child = uint32_t(tree.children.size());
-    tree.nodes[work.to].num_children = work.from->num_children;
-    for (uint32_t i = 0; i < work.from->num_children; ++i) {
-      const uint32_t child = uint32_t(tree.nodes.size());
-      tree.children.push_back(child);
-      tree.nodes.emplace_back();
-      stack.push_back({work.from->child[i], child});
+
+  // Numbers the children of a node, writes those that are leaves, and appends the others to `next`, the first
+  // one last.
+  void add_children(const Work& work, std::vector<Work>& next) {
+    const RawNode& from = *work.from;
+    const uint32_t first = work.below, count = from.num_children;
+    BuildTree::Node& node = tree_.nodes[work.to];
+    node.first_child = first - 1;  // The root is no child, so child number n is node n + 1.
+    node.num_children = uint8_t(count);
+    uint32_t end = work.below + from.num_below;
+    for (uint32_t i = count; i-- > 0;) {
+      tree_.children[first - 1 + i] = first + i;
+      end -= from[i].num_below();
+      if (from[i].is_leaf())
+        write_leaf(from[i].item(), tree_.nodes[first + i]);
+      else
+        next.push_back({&from[i].node(), first + i, end});
     }
   }
-  for (size_t n = tree.nodes.size(); n-- > 0;) {
-    BuildTree::Node& node = tree.nodes[n];
-    if (node.kind != NodeKind::Internal) continue;
+
+  static void write_leaf(const BuildItem& item, BuildTree::Node& node) {
+    node.bounds = item.bounds();
+    node.kind = kind_of(item.leaf);
+    node.leaf_block = block_of(item.leaf);
+  }
+
+  void flatten(const Work& part) {
+    std::vector<Work> stack{part};
+    while (!stack.empty()) {
+      const Work work = stack.back();
+      stack.pop_back();
+      add_children(work, stack);
+    }
+    for (uint32_t n = part.below + part.from->num_below; n-- > part.below;) set_bounds_of(n);
+    set_bounds_of(part.to);
+  }
+
+  void set_bounds_of(uint32_t n) {
+    BuildTree::Node& node = tree_.nodes[n];
+    if (node.kind != NodeKind::Internal) return;
     node.bounds = empty_bounds();
     for (uint32_t i = 0; i < node.num_children; ++i)
-      extend(node.bounds, tree.nodes[tree.children[node.first_child + i]].bounds);
+      extend(node.bounds, tree_.nodes[tree_.children[node.first_child + i]].bounds);
   }
-}
 
-std::vector<RTCBuildPrimitive> primitives_of(std::span<const BuildItem> items) {
-  std::vector<RTCBuildPrimitive> out(items.size());
-  for (size_t i = 0; i < items.size(); ++i) {
-    const auto& [low, high] = items[i].bounds;
-    out[i] = {low[0], low[1], low[2], 0, high[0], high[1], high[2], uint32_t(i)};
+  BuildTree& tree_;
+};
+
+// Holds Embree's device and the memory of its nodes.
+class Builder {
+ public:
+  explicit Builder(uint32_t threads)
+      : device_(rtcNewDevice(fmt::format("threads={},ignore_config_files=1", threads).c_str())) {
+    GLINT_CHECK(device_, "Embree does not start: error {}", int(rtcGetDeviceError(nullptr)));
+    bvh_ = rtcNewBVH(device_);
   }
-  return out;
-}
+  ~Builder() {
+    rtcReleaseBVH(bvh_);
+    rtcReleaseDevice(device_);
+  }
+  Builder(const Builder&) = delete;
+  Builder& operator=(const Builder&) = delete;
+
+  // Splits depend on counts and bounds only, and where these decide nothing, items are sorted by their
+  // number. So threads do not show in the tree.
+  const RawNode& build(std::span<BuildItem> items, uint32_t width) {
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    // The builder uses a binned SAH without spatial splits, so it places each primitive once.
+    arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+    arguments.maxBranchingFactor = width;  // opens the child of largest area until the node is full
+    arguments.maxDepth = kMaxDepth;
+    arguments.maxLeafSize = 1;
+    arguments.bvh = bvh_;
+    arguments.primitives = reinterpret_cast<RTCBuildPrimitive*>(items.data());
+    arguments.primitiveCount = arguments.primitiveArrayCapacity = items.size();
+    arguments.userPtr = &items;
+    arguments.createNode = create_node;
+    arguments.setNodeChildren = set_children;
+    arguments.setNodeBounds = set_bounds;
+    arguments.createLeaf = create_leaf;
+    const void* root = rtcBuildBVH(&arguments);
+    GLINT_CHECK(root, "Embree cannot build a tree of {} leaves: error {}", items.size(),
+                int(rtcGetDeviceError(device_)));
+    return *static_cast<const RawNode*>(root);
+  }
+
+ private:
+  RTCDevice device_;
+  RTCBVH bvh_;
+};
 
 }  // namespace
 
@@ -93,49 +214,21 @@ Bounds empty_bounds() {
   constexpr float kMost = std::numeric_limits<float>::max();
   return {{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
 }
-void extend(Bounds& bounds, const Bounds& other) {
-  for (size_t a = 0; a < 3; ++a) {
-    bounds.low[a] = bounds.low[a] < other.low[a] ? bounds.low[a] : other.low[a];
-    bounds.high[a] = bounds.high[a] > other.high[a] ? bounds.high[a] : other.high[a];
-  }
-}
 
-void build_tree(std::span<const BuildItem> items, uint32_t width, BuildTree& tree) {
+void build_tree(std::span<BuildItem> items, uint32_t width, uint32_t threads, BuildTree& tree) {
   GLINT_CHECK_LE(width, kMaxWidth);
-  tree.nodes.clear();
-  tree.children.clear();
-  if (items.size() < 2) {  // The root holds the one leaf, or nothing.
-    RawNode leaf, root;
-    root.num_children = 1;
-    root.child[0] = &leaf;
-    if (!items.empty()) return flatten(&root, items, tree);
-    tree.nodes.push_back({empty_bounds()});
-    return;
+  Flattener flattener(tree);
+  if (items.empty()) {
+    tree.nodes = mem::HostArray<BuildTree::Node>(1);
+    tree.nodes[0].bounds = empty_bounds();
+    tree.children = {};
+  } else if (items.size() == 1) {  // The root holds the one leaf.
+    RawNode root{1, 1, {RawChild::leaf(reinterpret_cast<const RTCBuildPrimitive*>(items.data()))}};
+    flattener.run(root, 1);
+  } else {
+    Builder builder(threads);
+    flattener.run(builder.build(items, width), threads);
   }
-  // With one thread, partitions keep their order, so the tree is the same in every run.
-  const RTCDevice device = rtcNewDevice("threads=1,ignore_config_files=1");
-  GLINT_CHECK(device, "Embree does not start: error {}", int(rtcGetDeviceError(nullptr)));
-  const RTCBVH bvh = rtcNewBVH(device);
-  std::vector<RTCBuildPrimitive> primitives = primitives_of(items);
-  RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  // The builder uses a binned SAH without spatial splits, so it places each primitive once.
-  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
-  arguments.maxBranchingFactor = width;  // opens the child of largest area until the node is full
-  arguments.maxDepth = kMaxDepth;
-  arguments.maxLeafSize = 1;
-  arguments.bvh = bvh;
-  arguments.primitives = primitives.data();
-  arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();
-  arguments.createNode = create_node;
-  arguments.setNodeChildren = set_children;
-  arguments.setNodeBounds = set_bounds;
-  arguments.createLeaf = create_leaf;
-  const void* root = rtcBuildBVH(&arguments);
-  GLINT_CHECK(root, "Embree cannot build a tree of {} leaves: error {}", items.size(),
-              int(rtcGetDeviceError(device)));
-  flatten(static_cast<const RawNode*>(root), items, tree);
-  rtcReleaseBVH(bvh);
-  rtcReleaseDevice(device);
 }
 
 }  // namespace glint::rt

@@ -7,23 +7,19 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel_ranges.h"
+#include "memsys/host_block.h"
 #include "rtunit/node_format.h"
 
 namespace glint::rt {
 
 struct Layout {
-  std::vector<uint32_t> block;  // block of each node of the tree, counted from the header
-  uint64_t bytes = 0;           // bytes of the structure
+  mem::HostArray<uint32_t> block;  // block of each node of the tree, counted from the header
+  uint64_t bytes = 0;              // bytes of the structure
 };
 
 inline std::span<const uint32_t> children_of(const BuildTree& tree, const BuildTree::Node& node) {
-  return std::span(tree.children).subspan(node.first_child, node.num_children);
-}
-
-inline std::vector<Bounds> bounds_of_children(const BuildTree& tree, const BuildTree::Node& node) {
-  std::vector<Bounds> out;
-  for (uint32_t child : children_of(tree, node)) out.push_back(tree.nodes[child].bounds);
-  return out;
+  return {tree.children.data() + node.first_child, node.num_children};
 }
 
 // Calls visit(child) for every child of every internal node. Siblings come together; the subtree of the first
@@ -46,7 +42,7 @@ void depth_first(const BuildTree& tree, Visit visit) {
 // Lays nodes out depth first. The children of a node follow each other without gaps, and leaves lie among
 // internal nodes.
 inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
-  Layout out{std::vector<uint32_t>(tree.nodes.size()), sizeof(StructureHeader) + node_bytes};
+  Layout out{mem::HostArray<uint32_t>(tree.nodes.size()), sizeof(StructureHeader) + node_bytes};
   out.block[0] = kRootBlock;
   depth_first(tree, [&](uint32_t child) {
     const NodeKind kind = tree.nodes[child].kind;
@@ -59,7 +55,7 @@ inline Layout mixed_layout(const BuildTree& tree, uint32_t node_bytes) {
 // Lays internal nodes out depth first and packed. The leaves lie behind them at multiples of their own 64
 // bytes. Internal children of a node follow each other without gaps, and so do its leaves.
 inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
-  Layout out{std::vector<uint32_t>(tree.nodes.size()), 0};
+  Layout out{mem::HostArray<uint32_t>(tree.nodes.size()), 0};
   out.block[0] = kRootBlock;
   uint64_t nodes = sizeof(StructureHeader) + node_bytes, leaves = 0;
   depth_first(tree, [&](uint32_t child) {
@@ -75,15 +71,25 @@ inline Layout split_layout(const BuildTree& tree, uint32_t node_bytes) {
   return out;
 }
 
-// Returns the structure's bytes with all leaves written; header and internal nodes are zero.
-inline std::vector<std::byte> bytes_with_leaves(const BuildTree& tree, const Layout& layout) {
-  std::vector<std::byte> out(layout.bytes);
-  for (size_t n = 0; n < tree.nodes.size(); ++n) {
-    const BuildTree::Node& node = tree.nodes[n];
-    if (node.kind == NodeKind::Internal) continue;
-    std::memcpy(&out[size_t(layout.block[n]) * kBlockBytes],
-                &tree.leaf_bytes[size_t(node.leaf_block) * kBlockBytes], leaf_bytes(node.kind));
-  }
+// Returns the structure's bytes with all leaves, and what node_of(node) makes of each internal node. The
+// header is zero. Calls of node_of() come from up to `threads` threads.
+template <class NodeOf>
+mem::HostBlock encoded(const BuildTree& tree, const Layout& layout, uint32_t threads, NodeOf node_of) {
+  constexpr size_t kRange = 16384;  // nodes that a thread takes at a time
+  mem::HostBlock out(layout.bytes);
+  parallel_ranges(tree.nodes.size(), kRange, threads, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) {
+      const BuildTree::Node& node = tree.nodes[n];
+      std::byte* to = out.data() + size_t(layout.block[n]) * kBlockBytes;
+      if (node.kind == NodeKind::Internal) {
+        const auto made = node_of(node);
+        std::memcpy(to, &made, sizeof made);
+      } else {
+        std::memcpy(to, tree.leaf_bytes.data() + size_t(node.leaf_block) * kBlockBytes,
+                    leaf_bytes(node.kind));
+      }
+    }
+  });
   return out;
 }
 

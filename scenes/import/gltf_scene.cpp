@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/host_threads.h"
 #include "base/regular_file.h"
 #include "pictures/decode.h"
 #include "scenes/import/gltf_materials.h"
@@ -149,7 +150,7 @@ class Nodes {
   uint32_t model_of(int mesh) {
     const auto [place, is_new] = models_.try_emplace(mesh, uint32_t(scene_.models.size()));
     if (is_new) {
-      scene_.models.push_back(read_mesh(file_, mesh, materials_, path_));
+      scene_.models.push_back(read_mesh(file_, mesh, {materials_, path_, host_threads(options_.threads)}));
       boxes_.push_back(bounds(scene_.models.back()));
       if (options_.progress) options_.progress(double(models_.size()) / double(file_.meshes.size()));
     }
@@ -214,10 +215,13 @@ std::string note_of(const tinygltf::Model& file) {
 }
 
 bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
-  const std::optional<std::string> text = read_regular_file(path);
-  if (text) bytes->assign(text->begin(), text->end());
-  if (!text) *error += path + " is no file that can be read";
-  return text.has_value();
+  std::optional<std::vector<unsigned char>> read = read_regular_bytes(path);
+  if (!read) {
+    *error += path + " is no file that can be read";
+    return false;
+  }
+  *bytes = std::move(*read);
+  return true;
 }
 
 bool is_regular_file(const std::string& path, void*) {

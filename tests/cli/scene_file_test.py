@@ -3,6 +3,7 @@
 """usage: scene_file_test.py GLINT SOURCE_DIR"""
 import base64
 import json
+import math
 import pathlib
 import struct
 import subprocess
@@ -11,7 +12,7 @@ import tempfile
 import unittest
 import zlib
 
-GLINT = pathlib.Path(sys.argv[1]).resolve()
+GLINT, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 RED, GREEN = 0, 1  # materials of the glTF files here, which glow
 
 
@@ -175,6 +176,24 @@ class SceneFiles(unittest.TestCase):
         done = self.glint("run", "missing.gltf")
         self.assertEqual(done.returncode, 2)
         self.assertIn("there is no such file", done.stderr)
+
+    def test_threads_that_read_a_large_mesh_do_not_show(self):
+        subprocess.run([sys.executable, SOURCE / "bench/make_hills.py", "200000", self.folder / "hills.glb"], check=True)
+        one, run = self.render("hills.glb", None, "--threads", "1", "--no-cache")
+        several, same = self.render("hills.glb", None, "--threads", "3", "--no-cache")
+        self.assertEqual(one, several)
+        self.assertEqual(run["scene"]["hash"], same["scene"]["hash"])
+        self.assertEqual(run["structures"], same["structures"])
+        # Of two wrong positions, which different threads read, the first is named.
+        data = bytearray((self.folder / "hills.glb").read_bytes())
+        first = 28 + struct.unpack_from("<I", data, 12)[0]
+        for vertex, wrong in ((60_000, math.inf), (90_000, -math.inf)):
+            struct.pack_into("<f", data, first + 12 * vertex, wrong)
+        (self.folder / "bad.glb").write_bytes(data)
+        for threads in "123":
+            done = self.glint("run", "bad.glb", "--threads", threads)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("in mesh 0 ('hills'): a position is (inf,", done.stderr)
 
     def test_mistakes_in_an_obj_file_are_named_with_their_line(self):
         corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"

@@ -103,13 +103,15 @@ TEST_CASE("boxes as decoded contain what they were made of") {
     const auto format = make_format(name);
     for (int round = 0; round < 2000; ++round) {
       BuildTree tree;
-      tree.nodes.resize(1);
-      tree.leaf_bytes.resize(kLeafBytes * format->width());
+      tree.leaf_bytes = mem::HostBlock(kLeafBytes * format->width());
       const float size = std::pow(10.f, random.uniform(-36, 36)),
                   place = size * std::pow(10.f, random.uniform(-2, 6));
       const auto center = scaled_point(random, std::fmin(place, 1e37f));
-      tree.nodes[0].num_children = 1 + random.below(format->width());
-      for (uint32_t i = 0; i < tree.nodes[0].num_children; ++i) {
+      const uint32_t children = 1 + random.below(format->width());
+      tree.nodes = mem::HostArray<BuildTree::Node>(1 + children);
+      tree.children = mem::HostArray<uint32_t>(children);
+      tree.nodes[0].num_children = uint8_t(children);
+      for (uint32_t i = 0; i < children; ++i) {
         BuildTree::Node leaf;
         leaf.kind = NodeKind::Triangle;
         leaf.leaf_block = i * kLeafBytes / kBlockBytes;
@@ -118,12 +120,12 @@ TEST_CASE("boxes as decoded contain what they were made of") {
           leaf.bounds.low[k] = center[k] + std::fmin(a[k], b[k]);
           leaf.bounds.high[k] = random.below(8) ? center[k] + std::fmax(a[k], b[k]) : leaf.bounds.low[k];
         }
-        tree.nodes.push_back(leaf);
-        tree.children.push_back(i + 1);
+        tree.nodes[i + 1] = leaf;
+        tree.children[i] = i + 1;
       }
-      const auto bytes = format->encode(tree);
+      const mem::HostBlock bytes = format->encode(tree, 1);
       std::vector<DecodedChild> decoded(format->width());
-      const uint32_t count = format->decode(&bytes[kRootBlock * kBlockBytes], decoded);
+      const uint32_t count = format->decode(bytes.data() + kRootBlock * kBlockBytes, decoded);
       REQUIRE(count == tree.nodes[0].num_children);
       for (uint32_t i = 0; i < count; ++i)
         for (size_t k = 0; k < 3; ++k) {

@@ -66,10 +66,12 @@ pipeline::RenderJob make_job(const Session& session, const SceneOptions& options
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
   ProgressPipe pipe(session.progress_descriptor, "loading");
-  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing, [&](double part) {
+  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing,
+                                                 [&](double part) {
                                                    progress.update(uint64_t(100 * part), 100);
                                                    pipe.update(uint64_t(1000 * part), 1000);
-                                                 }});
+                                                 },
+                                                 launch.threads});
   scenes::override_scene(job.scene, options.frame.overrides());
   return job;
 }
@@ -111,7 +113,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
   const auto render = [&](const pipeline::LaunchWatch& watch) {
     job.watch = watch;
     job.watch.is_bounded = has_built_in_shaders;  // Their loops count to numbers of rays.
-    pipeline::RenderResult rendered = pipeline::render(job);
+    pipeline::RenderResult rendered = pipeline::render_and_drain(job);
     const pipeline::StructureCounts& made = rendered.structures;
     info.structures = {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
                        made.instances, made.top_depth, made.bottom_depth};

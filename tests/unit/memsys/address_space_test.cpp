@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "memsys/address_space.h"
 
+#include <utility>
+
 #include "tests/support/catch.h"
 
 using namespace glint;
@@ -34,6 +36,20 @@ TEST_CASE("memory is zero when allocated, aligned to 64 bytes, and keeps what is
   space.write(a + 8, &value, 4);
   CHECK(space.view<uint32_t>(a, 16)[2] == 0xdead'beef);
   CHECK(space.view<uint32_t>(a, 16)[3] == 0);
+}
+
+TEST_CASE("bytes that were made elsewhere become an allocation without being copied") {
+  AddressSpace space;
+  mem::HostBlock block(100);
+  CHECK(reinterpret_cast<uintptr_t>(block.data()) % 64 == 0);
+  block.data()[99] = std::byte{7};
+  const std::byte* bytes = block.data();
+  const Address a = space.adopt("a", std::move(block)), b = space.allocate("b", 1);
+  CHECK(block.size() == 0);
+  CHECK(space.find(a, 100) == bytes);
+  CHECK(space.find(a + 99, 1)[0] == std::byte{7});
+  CHECK(space.find(a + 100, 1) == nullptr);
+  CHECK(b == Address{2} << 32);
 }
 
 TEST_CASE("physical addresses pack allocations at 256 byte steps") {

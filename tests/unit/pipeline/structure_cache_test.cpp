@@ -44,8 +44,9 @@ struct Strip {
 };
 
 bool equal(const rt::EncodedBottom& a, const rt::EncodedBottom& b) {
-  return a.bytes == b.bytes && a.info.nodes == b.info.nodes && a.info.leaves == b.info.leaves &&
-         a.info.depth == b.info.depth &&
+  return a.bytes.size() == b.bytes.size() &&
+         std::memcmp(a.bytes.data(), b.bytes.data(), a.bytes.size()) == 0 && a.info.nodes == b.info.nodes &&
+         a.info.leaves == b.info.leaves && a.info.depth == b.info.depth &&
          std::memcmp(&a.info.bounds, &b.info.bounds, sizeof a.info.bounds) == 0;
 }
 

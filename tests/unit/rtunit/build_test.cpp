@@ -1,6 +1,11 @@
 // Tests structures in memory: contents, sizes, determinism, and a validator that sees damage.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+#include <string>
+#include <vector>
+
 #include "base/diagnostics.h"
+#include "base/registry.h"
 #include "rtunit/node_format.h"
 #include "rtunit/structure/validate.h"
 #include "tests/support/catch.h"
@@ -68,6 +73,44 @@ TEST_CASE("the same geometry gives the same bytes") {
   mem::AddressSpace a, b;
   CHECK(bytes_of(a, build_bottom(a, "b", {{triangles(positions)}})) ==
         bytes_of(b, build_bottom(b, "b", {{triangles(positions)}})));
+}
+
+// Neighbours share edges, so pairs of triangles reach across what one thread looks at. Identical triangles
+// have no order but that of their numbers.
+TEST_CASE("threads that build do not show in a structure's bytes") {
+  Random random{9};
+  Positions positions = soup(random, 70'000, 10, 0.2f);
+  for (int i = 0; i < 9; ++i)
+    positions.insert(positions.end(), positions.begin() + 9, positions.begin() + 18);
+  std::vector<uint32_t> strip;
+  for (uint32_t i = 0; i < 70'000; ++i) strip.insert(strip.end(), {i, i + 1, i + 2});
+  const std::vector<Bounds> boxes(3000, Bounds{{0, 0, 0}, {1, 1, 1}});
+  Geometry stripped = triangles(positions), procedural;
+  stripped.indices = strip;
+  procedural.aabbs = boxes;
+  const BottomLevel level{{triangles(positions), procedural, stripped}};
+  for (const std::string& format : Registry<NodeFormat>::names()) {
+    const EncodedBottom one = encode_bottom("b", level, {format.c_str()}, 1);
+    CHECK(one.info.primitives > one.info.leaves);
+    const EncodedBottom several = encode_bottom("b", level, {format.c_str()}, 3);
+    CAPTURE(format);
+    REQUIRE(several.bytes.size() == one.bytes.size());
+    CHECK(std::memcmp(several.bytes.data(), one.bytes.data(), one.bytes.size()) == 0);
+    CHECK(several.info.depth == one.info.depth);
+    CHECK(several.info.stack_need == one.info.stack_need);
+  }
+}
+
+TEST_CASE("of several wrong indices the first is named, at any number of threads") {
+  Random random{9};
+  const Positions positions = soup(random, 1000, 10, 0.2f);
+  std::vector<uint32_t> indices(600'000);
+  for (const size_t wrong : {300'000u, 300'100u, 599'999u}) indices[wrong] = 3000;
+  Geometry geometry = triangles(positions);
+  geometry.indices = indices;
+  for (const uint32_t threads : {1u, 2u, 8u})
+    CHECK_THROWS_WITH(encode_bottom("b", {{geometry}}, {}, threads),
+                      Catch::Contains("triangle 100000 names"));
 }
 
 TEST_CASE("thousands of identical triangles still make a tree that a ray's stack can hold") {

@@ -1,0 +1,77 @@
+// Holds bytes of the host that become bytes of simulated memory.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace glint::mem {
+
+// Holds bytes that are 0 at first and aligned to 64 bytes. The host gives a page of a large block when the
+// page is first touched, so that the threads that fill a block also share the cost of its pages. A moved
+// block is empty. Throws std::bad_alloc when the host has no memory.
+class HostBlock {
+ public:
+  static constexpr uint64_t kAlignment = 64;
+
+  HostBlock() = default;
+  // The host's bytes are whole cache lines, so that a line can be copied even where only a part is used.
+  explicit HostBlock(uint64_t bytes)
+      : memory_(std::calloc(1, size_t((bytes / kAlignment + 2) * kAlignment))), size_(bytes) {
+    if (!memory_) throw std::bad_alloc();
+    const auto at = reinterpret_cast<uintptr_t>(memory_.get());
+    data_ = static_cast<std::byte*>(memory_.get()) + (kAlignment - at % kAlignment) % kAlignment;
+  }
+  HostBlock(HostBlock&& other) noexcept
+      : memory_(std::move(other.memory_)),
+        data_(std::exchange(other.data_, nullptr)),
+        size_(std::exchange(other.size_, 0)) {}
+  HostBlock& operator=(HostBlock&& other) noexcept {
+    memory_ = std::move(other.memory_);
+    data_ = std::exchange(other.data_, nullptr);
+    size_ = std::exchange(other.size_, 0);
+    return *this;
+  }
+
+  std::byte* data() { return data_; }
+  const std::byte* data() const { return data_; }
+  uint64_t size() const { return size_; }  // bytes
+
+ private:
+  struct Free {
+    void operator()(void* memory) const { std::free(memory); }
+  };
+  std::unique_ptr<void, Free> memory_;
+  std::byte* data_ = nullptr;
+  uint64_t size_ = 0;
+};
+
+// Holds objects in such bytes. All bytes of an object that was not written are 0.
+template <class T>
+class HostArray {
+  static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= HostBlock::kAlignment);
+
+ public:
+  HostArray() = default;
+  explicit HostArray(size_t count) : block_(count * sizeof(T)) {}
+
+  T* data() { return reinterpret_cast<T*>(block_.data()); }
+  const T* data() const { return reinterpret_cast<const T*>(block_.data()); }
+  size_t size() const { return size_t(block_.size() / sizeof(T)); }
+  bool empty() const { return size() == 0; }
+  T* begin() { return data(); }
+  T* end() { return data() + size(); }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size(); }
+  T& operator[](size_t i) { return data()[i]; }
+  const T& operator[](size_t i) const { return data()[i]; }
+
+ private:
+  HostBlock block_;
+};
+
+}  // namespace glint::mem
