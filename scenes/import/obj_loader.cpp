@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <tiny_obj_loader.h>
-#include <unordered_map>
 #include <utility>
 
 #include "base/diagnostics.h"
@@ -44,6 +44,42 @@ struct VertexEqual {
     return a.position == b.position && a.normal == b.normal && a.texture_coordinate == b.texture_coordinate &&
            a.material == b.material;
   }
+};
+
+// Finds vertices by value, and appends those that are new. It holds only their numbers, in a table that is at
+// most half full, so that a lookup touches little memory.
+class VertexTable {
+ public:
+  explicit VertexTable(std::vector<Vertex>& vertices) : vertices_(vertices) {}
+
+  uint32_t index_of(const Vertex& vertex) {
+    if (2 * (vertices_.size() + 1) > places_.size()) grow();
+    uint32_t& place = place_of(vertex);
+    if (place == kNone) {
+      place = uint32_t(vertices_.size());
+      vertices_.push_back(vertex);
+    }
+    return place;
+  }
+
+ private:
+  static constexpr uint32_t kNone = UINT32_MAX;
+  static constexpr size_t kLeast = 1024;
+
+  // Returns where the vertex is, or the free place where it belongs.
+  uint32_t& place_of(const Vertex& vertex) {
+    const size_t mask = places_.size() - 1;
+    size_t at = VertexHash{}(vertex)&mask;
+    while (places_[at] != kNone && !VertexEqual{}(vertices_[places_[at]], vertex)) at = (at + 1) & mask;
+    return places_[at];
+  }
+  void grow() {
+    places_.assign(std::max(kLeast, 2 * places_.size()), kNone);
+    for (uint32_t i = 0; i < vertices_.size(); ++i) place_of(vertices_[i]) = i;
+  }
+
+  std::vector<Vertex>& vertices_;
+  std::vector<uint32_t> places_;  // numbers of vertices; the count of places is a power of two
 };
 
 Vertex corner_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& index, int32_t material) {
@@ -165,12 +201,7 @@ Model load_obj(const std::string& path, std::vector<Material>& materials, std::v
 
   Model model;
   model.name = std::filesystem::path(path).stem().string();
-  std::unordered_map<Vertex, uint32_t, VertexHash, VertexEqual> known;
-  const auto index_of = [&](const Vertex& vertex) {
-    const auto [place, is_new] = known.try_emplace(vertex, uint32_t(model.vertices.size()));
-    if (is_new) model.vertices.push_back(vertex);
-    return place->second;
-  };
+  VertexTable known(model.vertices);
   const tinyobj::attrib_t& attributes = reader.GetAttrib();
   for (const tinyobj::shape_t& shape : reader.GetShapes()) {
     const tinyobj::index_t* corner = shape.mesh.indices.data();
@@ -179,7 +210,7 @@ Model load_obj(const std::string& path, std::vector<Material>& materials, std::v
       const int32_t material = base + std::max(0, shape.mesh.material_ids[face]);
       for (size_t k = 2; k < corners; ++k)
         for (const size_t i : {size_t{0}, k - 1, k})
-          model.indices.push_back(index_of(corner_of(attributes, corner[i], material)));
+          model.indices.push_back(known.index_of(corner_of(attributes, corner[i], material)));
       corner += corners;
     }
   }
