@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "base/types.h"
 #include "core/issue_table.h"
@@ -24,9 +25,11 @@ class Scoreboard {
     Stall wait = Stall::RawFixed;  // what the last of the registers waits for
   };
 
+  // Makes room for who reads which register. It is called once, where hold() will be.
+  void keep_reads() { reads_.resize(kScoreboardEntries); }
   void reset() {
     entries_.fill(0);
-    reads_.fill({});
+    std::fill(reads_.begin(), reads_.end(), Reads{});
   }
   // Returns when all of `registers` are ready. It is not before `start`, which waits for `start.wait`.
   Ready ready(std::span<const uint16_t> registers, Ready start) const {
@@ -137,7 +140,8 @@ class Scoreboard {
   };
 
   std::array<Entry, kScoreboardEntries> entries_{};
-  std::array<Reads, kScoreboardEntries> reads_{};
+  // It is empty where memory instructions do not hold registers, which saves 133 bytes of the host a thread.
+  std::vector<Reads> reads_;
 };
 
 }  // namespace glint::core

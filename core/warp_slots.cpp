@@ -36,6 +36,7 @@ WarpSlots::WarpSlots(uint32_t size, const Params& params, const exec::World& wor
   for (uint32_t slot = 0; slot < size; ++slot) {
     slots_[slot].scheduler = &schedulers_[slot % params.schedulers];
     slots_[slot].local = slot / params.schedulers;
+    if (holds_operands_) slots_[slot].scoreboard.keep_reads();
   }
 }
 
