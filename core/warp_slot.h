@@ -1,6 +1,8 @@
 // Holds one warp slot of a core: its warp, and what has to happen before its next instruction can issue.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "base/types.h"
@@ -15,7 +17,7 @@ namespace glint::core {
 
 // Holds the state of one slot that issuing an instruction touches. What a scheduler scans in every cycle is
 // in the scheduler instead, as arrays over its warps.
-struct WarpSlot {
+struct WarpState {
   exec::WarpContext warp;
   Scoreboard::Ready front;  // the warp issues nothing before this cycle, whatever its registers say
   Sequence sequence;        // the sequence that the warp is in
@@ -26,5 +28,13 @@ struct WarpSlot {
   uint32_t local = 0;              // the number of the slot in its scheduler
   Scoreboard scoreboard;
 };
+
+// Choice: a slot takes an odd number of cache lines of the host, so that the same members of a core's warps
+// lie in different sets of its caches.
+struct WarpSlot : WarpState {
+  static constexpr size_t kLine = 64;
+  alignas(kLine) std::array<std::byte, kLine*(1 + sizeof(WarpState) / kLine % 2)> apart;
+};
+static_assert(sizeof(WarpSlot) / WarpSlot::kLine % 2 == 1);
 
 }  // namespace glint::core

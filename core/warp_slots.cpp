@@ -27,6 +27,7 @@ WarpSlots::WarpSlots(uint32_t size, const Params& params, const exec::World& wor
                 !fetch),
       prologue_(params.prologue.instructions +
                 (world.shared_bytes > 0 ? params.prologue.shared_instructions : 0)),
+      alarms_(std::make_unique<Alarms>(params.schedulers)),
       slots_(size),
       blocks_(num_block_slots(size, params, world)) {
   GLINT_CHECK(size > 0, "no warp fits: check() reports this");

@@ -76,7 +76,7 @@ class WarpSlots {
   const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
   const bool is_plain_;        // Operands are ready when the scoreboard says so, and nothing else counts.
   const uint32_t prologue_;    // machine instructions before a warp's first instruction
-  const std::unique_ptr<Alarms> alarms_ = std::make_unique<Alarms>();  // the schedulers refer to it
+  const std::unique_ptr<Alarms> alarms_;  // the schedulers refer to it
   std::vector<Scheduler> schedulers_;
   std::vector<WarpSlot> slots_;
   BlockSlots blocks_;

@@ -42,9 +42,9 @@ void Executor::start(WarpContext& warp, uint32_t warp_index) const {
   start(warp, *warp.own_block, 0);
 }
 
-Issued Executor::execute_effect(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Cycle now) {
-  const uint32_t pc = warp.simt.pc;
-  Issued issued{pc, &inst, &row, warp.regs.exec, warp.simt.active, false};
+void Executor::execute_effect(WarpContext& warp, Issued& issued, Cycle now) {
+  const isa::Inst& inst = *issued.inst;
+  const isa::OpRow& row = *issued.row;
   if (reads_clock_) [[unlikely]]
     fill_clock(warp, now, clock_mhz_);
   if (seen_.is_used()) seen_.view().begin(now);
@@ -56,7 +56,7 @@ Issued Executor::execute_effect(WarpContext& warp, const isa::Inst& inst, const 
     ok = dispatch(warp, inst, row);
   }
   issued.lanes = warp.regs.exec;  // Ray effects leave out lanes that had nothing to do.
-  if (warp.waiting_for_rays && traversal_.is_used() && ok) traversal_.walk(warp, pc);
+  if (warp.waiting_for_rays && traversal_.is_used() && ok) traversal_.walk(warp, issued.pc);
   issued.finished = warp.simt.finished();
   if (ok && issued.finished) [[unlikely]]
     ok = barriers_.end_warp(warp);
@@ -64,7 +64,6 @@ Issued Executor::execute_effect(WarpContext& warp, const isa::Inst& inst, const 
     ++warp.instructions;
     retired.fire([&] { return Retired{warp, issued}; });
   }
-  return issued;
 }
 
 bool Executor::dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {

@@ -81,16 +81,18 @@ class Executor {
   Issued execute(WarpContext& warp, Cycle now) {
     const uint32_t pc = warp.simt.pc;
     const Step& step = world_.image->code[pc];
-    const isa::Inst& inst = step.inst;
     LaneMask exec = warp.simt.active;
-    if (inst.guard != isa::kNoGuard) {
-      const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
-      exec &= inst.guard & isa::kGuardNegate ? ~guard : guard;
+    if (step.inst.guard != isa::kNoGuard) {
+      const LaneMask guard = warp.regs.predicate[step.inst.guard & (isa::kNumPredicates - 1)];
+      exec &= step.inst.guard & isa::kGuardNegate ? ~guard : guard;
     }
     warp.regs.exec = exec;
-    if (step.effect != isa::Effect::None || reads_clock_) return execute_effect(warp, inst, *step.row, now);
-    const Issued issued{pc, &inst, step.row, exec, warp.simt.active, false};
-    step.run(warp.regs, inst, *step.row);
+    Issued issued{pc, &step.inst, step.row, exec, warp.simt.active, false};
+    if (step.effect != isa::Effect::None || reads_clock_) {
+      execute_effect(warp, issued, now);
+      return issued;
+    }
+    step.run(warp.regs, step.inst, *step.row);
     ++warp.simt.pc;
     ++warp.instructions;
     retired.fire([&] { return Retired{warp, issued}; });
@@ -130,7 +132,7 @@ class Executor {
   const World& world() const { return world_; }
 
  private:
-  Issued execute_effect(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Cycle now);
+  void execute_effect(WarpContext& warp, Issued& issued, Cycle now);
   bool dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool is_in_trace(WarpContext& warp, const isa::OpRow& row);
 
