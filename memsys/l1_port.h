@@ -38,6 +38,8 @@ class L1Port {
   virtual void tick(Cycle now) = 0;
   virtual Cycle next_event(Cycle now) const = 0;  // is kNever when nothing is in flight
   virtual uint32_t line_bytes() const = 0;
+  // Returns the cycles from a read that hits to its answer.
+  virtual Cycle hit_latency() const = 0;
   // Returns lines of text that say what is in flight and what waits for it, to explain a machine that is
   // stuck. The text is empty when nothing is in flight.
   virtual std::string describe() const { return {}; }

@@ -33,6 +33,16 @@ struct PipelineParams {
   }
 };
 
+// Switches that give the unit what no hardware can have. Each bounds what a kind of idea can gain.
+struct Oracle {
+  bool fetch_hits = false;
+  static ParamList params() {
+    return {flag(&Oracle::fetch_hits, "fetch_hits",
+                 "True: every node that a ray asks for is in the L1 already and moves no bytes, which bounds "
+                 "what prefetching can gain. False: nodes come through the L1.")};
+  }
+};
+
 // These are the values of rt.unit, which says who walks rays.
 inline constexpr std::string_view kHardware = "hardware", kSoftware = "software";
 inline std::vector<std::string> unit_names() {
@@ -67,6 +77,7 @@ struct Params {
   PolicyChoice<Prefetcher> prefetch{"none"};
   uint32_t prefetch_queue =
       512;  // Choice: 16 entries for each lane of a warp; the published one has no bound
+  Oracle oracle;
   Shortcuts shortcuts;
   static ParamList params() {
     return {
@@ -117,6 +128,8 @@ struct Params {
         policy(&Params::prefetch, "prefetch", "Selects which nodes are read before a ray asks for them."),
         param(&Params::prefetch_queue, "prefetch_queue", "sector",
               "Largest number of sectors that wait to be read ahead.", 1, 65536),
+        section(&Params::oracle, "oracle",
+                "Switches that give the unit what no hardware can have, to bound what an idea can gain."),
         section(
             &Params::shortcuts, "shortcuts",
             "Switches that make the unit behave as Vulkan-Sim does and hardware does not, for comparisons.")};

@@ -86,6 +86,7 @@ class L1Cache final : public L1Port {
   }
   Cycle next_event(Cycle now) const override;
   uint32_t line_bytes() const override { return line_bytes_; }
+  Cycle hit_latency() const override { return params_.hit_latency; }
   std::string describe() const override;
 
   const L1Stats& stats() const { return stats_; }

@@ -24,6 +24,7 @@ FetchQueue::FetchQueue(const Params& params, const mem::AddressSpace& memory, me
       responses_per_cycle_(params.responses_per_cycle),
       request_bytes_(params.request_bytes),
       line_bytes_(l1.line_bytes()),
+      always_hits_(params.oracle.fetch_hits),
       scheduler_name_(params.scheduler.name),
       memory_(memory),
       l1_(l1),
@@ -127,8 +128,14 @@ void FetchQueue::prepare_request() {
   request_.token = sending_;
 }
 
+bool FetchQueue::ask(Cycle now) {
+  if (!always_hits_) return l1_.access(now, mem::Client::RtUnit, request_);
+  sure_hits_.push({now + l1_.hit_latency(), request_.token});
+  return true;
+}
+
 bool FetchQueue::send(Cycle now) {
-  if (!l1_.access(now, mem::Client::RtUnit, request_)) return false;
+  if (!ask(now)) return false;
   ++stats_.requests;
   stats_.sectors += num_sectors_;
   ReadInFlight& read = reads_[sending_];

@@ -10,6 +10,7 @@
 #include "memsys/address_space.h"
 #include "memsys/l1_port.h"
 #include "memsys/request.h"
+#include "memsys/ring.h"
 #include "rtunit/params.h"
 #include "rtunit/unit/request_source.h"
 #include "rtunit/unit/warp_buffer.h"
@@ -53,7 +54,8 @@ class FetchQueue final : public RequestSource, private WantedNodes {
   bool send(Cycle now) override;
   bool has_reads_waiting() const override { return buffer_.has_wanting_lanes(); }
   Cycle next_event(Cycle now) const override {
-    return has_request(now) || (!is_full() && has_reads_waiting()) ? now + 1 : kNever;
+    if (has_request(now) || (!is_full() && has_reads_waiting())) return now + 1;
+    return sure_hits_.empty() ? kNever : sure_hits_.front().ready;
   }
 
   // Makes an entry for a read of one request that another part of the unit sends. Returns the request's
@@ -68,7 +70,7 @@ class FetchQueue final : public RequestSource, private WantedNodes {
   template <class Deliver>
   void receive(Cycle now, Deliver&& deliver) {
     for (uint32_t i = 0; i < responses_per_cycle_; ++i) {
-      const std::optional<mem::Token> token = l1_.pop(now, mem::Client::RtUnit);
+      const std::optional<mem::Token> token = next_answer(now);
       if (!token) return;
       --reads_[*token].unanswered;
       if (!reads_[*token].is_complete()) continue;
@@ -89,6 +91,17 @@ class FetchQueue final : public RequestSource, private WantedNodes {
   }
 
  private:
+  struct SureHit {
+    Cycle ready = 0;
+    mem::Token token = 0;
+  };
+  std::optional<mem::Token> next_answer(Cycle now) {
+    if (sure_hits_.empty() || sure_hits_.front().ready > now) return l1_.pop(now, mem::Client::RtUnit);
+    const mem::Token token = sure_hits_.front().token;
+    sure_hits_.pop();
+    return token;
+  }
+  bool ask(Cycle now);
   LaneMask lanes(uint32_t warp) const override { return buffer_[warp].wanting; }
   const Fetch& node(uint32_t warp, int lane) const override { return buffer_[warp].read[size_t(lane)].what; }
   bool has_ready_warp(Cycle now);
@@ -98,6 +111,8 @@ class FetchQueue final : public RequestSource, private WantedNodes {
 
   const uint32_t max_reads_, responses_per_cycle_, request_bytes_;  // max_reads_ 0: no limit
   const uint32_t line_bytes_;
+  const bool always_hits_;        // rt.oracle.fetch_hits
+  mem::Ring<SureHit> sure_hits_;  // answers of such reads, in order
   const std::string scheduler_name_;
   const mem::AddressSpace& memory_;
   mem::L1Port& l1_;

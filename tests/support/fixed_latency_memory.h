@@ -50,6 +50,7 @@ class FixedLatencyMemory final : public L1Port {
     return next < now ? now : next;
   }
   uint32_t line_bytes() const override { return line_bytes_; }
+  Cycle hit_latency() const override { return 1; }
 
   // Takes reads from now on and never answers them.
   void swallow() { swallows_ = true; }

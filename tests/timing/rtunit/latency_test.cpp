@@ -53,6 +53,24 @@ TEST_CASE("a lone ray takes its fetches and tests in sequence, and two cycles to
   }
 }
 
+TEST_CASE("with an oracle that has every node in the L1, a ray waits for hits and sends no request") {
+  const Scene scene;
+  for (uint64_t seed = 1; seed < 20; ++seed) {
+    Params params;
+    params.stack.name = "full";
+    mem::FixedLatencyMemory fast(1), slow(500), unused(500);
+    RtUnit at_once(params, {scene.memory, fast}), late(params, {scene.memory, slow});
+    params.oracle.fetch_hits = true;
+    RtUnit sure(params, {scene.memory, unused});
+    auto a = one_lane(scene.ray(seed)), b = a, c = a;
+    const Cycle hits = launch(at_once, fast, a, false).last_completion;
+    CHECK(launch(sure, unused, b, false).last_completion == hits);
+    CHECK(launch(late, slow, c, false).last_completion > hits);
+    CHECK(unused.log().empty());
+    CHECK(sure.stats().requests.value() == at_once.stats().requests.value());
+  }
+}
+
 TEST_CASE("lanes with the same ray share every fetch") {
   const Scene scene;
   const RayState ray = scene.ray(3);
@@ -196,6 +214,7 @@ TEST_CASE("a refused request is tried again until it is taken, and the cycles ar
     void tick(Cycle) override {}
     Cycle next_event(Cycle now) const override { return inner.next_event(now); }
     uint32_t line_bytes() const override { return 128; }
+    Cycle hit_latency() const override { return 1; }
     mem::FixedLatencyMemory inner{5};
   } l1;
   RtUnit unit({}, {scene.memory, l1});

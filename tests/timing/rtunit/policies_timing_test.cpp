@@ -42,6 +42,7 @@ class TimedMemory final : public mem::L1Port {
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override { return inner.next_event(now); }
   uint32_t line_bytes() const override { return 128; }
+  Cycle hit_latency() const override { return inner.hit_latency(); }
   mem::FixedLatencyMemory inner;
   std::vector<Cycle> sent;
   int open = 0, most_open = 0;

@@ -25,6 +25,7 @@ class HalfTimeMemory final : public mem::L1Port {
   void tick(Cycle) override {}
   Cycle next_event(Cycle now) const override { return memory_.next_event(now); }
   uint32_t line_bytes() const override { return memory_.line_bytes(); }
+  Cycle hit_latency() const override { return memory_.hit_latency(); }
 
  private:
   mem::FixedLatencyMemory memory_{kMemoryLatency};
