@@ -86,6 +86,11 @@ class Runs(LabTest):
         self.assertEqual(figures["SHIP_SH", "rays, ratio"], 1)
         self.assertGreater(figures["SHIP_SH", "nodes a ray"], 5)
 
+    def test_another_machine_has_a_folder_of_its_own(self):
+        text = self.lab(0, self.experiment(), "--config", "mobile", "--workloads", "SHIP_SH").stdout
+        self.assertIn("machine: mobile", text)
+        self.assertTrue((self.folder / "out/lab-mine-mobile/base/SHIP_SH/run.json").exists())
+
     def test_what_is_complete_is_not_run_again(self):
         name = self.experiment()
         self.lab(0, name, "--arms", "base")

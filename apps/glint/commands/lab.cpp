@@ -2,6 +2,7 @@
 // paper's.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <string>
@@ -17,7 +18,7 @@ namespace glint::app {
 namespace {
 
 struct LabOptions {
-  std::string name, out, size;
+  std::string name, config, out, size;
   std::vector<std::string> workloads, arms;
   uint32_t processes = 0;
   bool check = false;
@@ -118,12 +119,20 @@ Exit conclude(const Experiment& experiment, const LabOptions& options, const std
   return Exit::Failure;
 }
 
+std::string stem_of(const std::string& config) {
+  return std::filesystem::path(config).stem().string();
+}
+
 Exit run_lab(const Session& session, const LabOptions& options) {
   Experiment experiment = read_experiment(session.resources.lab_path(options.name));
+  if (!options.config.empty()) experiment.config = options.config;
   choose_arms(options.arms, experiment);
   drop_empty_arms(options.workloads, experiment);
   check_baselines(experiment);
-  const std::string folder = options.out.empty() ? "out/lab-" + experiment.name : options.out;
+  const std::string folder = !options.out.empty() ? options.out
+                             : options.config.empty()
+                                 ? "out/lab-" + experiment.name
+                                 : "out/lab-" + experiment.name + "-" + stem_of(options.config);
   for (const LabArm& arm : experiment.arms) {
     print_output(
         "\n{}: {}\n", arm.name,
@@ -155,6 +164,8 @@ void add_lab(Command app, Session& session) {
                   "Number of processes that run at a time; 0: one for each processor")
       .in_range(0u, 1024u)
       .capture_default_str();
+  command.add_option("--config", options->config,
+                     "Preset or file of another machine for all arms (default: the experiment's)");
   command.add_option("--workloads", options->workloads,
                      "Which of the experiment's workloads to run, named as for 'glint bench' (default: all)");
   command.add_option("--arms", options->arms, "Arms to run, with their baselines (default: all)");
@@ -164,7 +175,7 @@ void add_lab(Command app, Session& session) {
       .add_option(
           "--out", options->out,
           "Folder for the results, with a folder for each arm; what is complete there is not run again "
-          "(default: out/lab-NAME)")
+          "(default: out/lab-NAME, or out/lab-NAME-CONFIG)")
       .type_name("DIR");
   command.add_flag("--check", options->check,
                    "Exit with code 1 when an effect has not the sign that was published");
