@@ -12,6 +12,7 @@
 #include "rtunit/child_order.h"
 #include "rtunit/coalescer.h"
 #include "rtunit/prefetcher.h"
+#include "rtunit/ray_entry.h"
 #include "rtunit/ray_scheduler.h"
 #include "rtunit/shortcuts/shortcuts.h"
 #include "rtunit/stack_model.h"
@@ -74,6 +75,7 @@ struct Params {
   PolicyChoice<Coalescer> coalescing{"within_warp"};
   PolicyChoice<StackModel> stack{"short_stack"};
   PolicyChoice<WorkMapping> mapping{"own_ray"};
+  PolicyChoice<RayEntry> entry{"root"};
   PolicyChoice<Prefetcher> prefetch{"none"};
   uint32_t prefetch_queue =
       512;  // Choice: 16 entries for each lane of a warp; the published one has no bound
@@ -125,6 +127,7 @@ struct Params {
         policy(&Params::stack, "stack", "Selects where a ray keeps the nodes that it still has to visit."),
         policy(&Params::mapping, "mapping",
                "Selects which lanes visit nodes for the rays of other lanes of their warp."),
+        policy(&Params::entry, "entry", "Selects where a ray begins its walk."),
         policy(&Params::prefetch, "prefetch", "Selects which nodes are read before a ray asks for them."),
         param(&Params::prefetch_queue, "prefetch_queue", "sector",
               "Largest number of sectors that wait to be read ahead.", 1, 65536),

@@ -11,7 +11,8 @@ namespace {
 // Sources: Laine 2010, "Restart Trail for Stackless BVH Traversal"; Vaidyanathan et al. 2019 for wide nodes.
 // A few bits per level say which children are done. A ray whose stack is empty goes down from the root again,
 // past what is done, and its stack keeps the entries that it meets on the way. Model: entries that have been
-// cut off cost one restart, however many they are; the trail needs no memory.
+// cut off cost one restart, however many they are; the trail needs no memory. A ray that began below the root
+// goes down from the node where it began, until it has finished with that.
 class RestartTrail final : public StackModel {
  public:
   static constexpr std::string_view kName = "restart_trail";
@@ -31,11 +32,12 @@ class RestartTrail final : public StackModel {
   StackWork settle(RayState& state) const override {
     int16_t& forgotten = state.stack_off_chip;
     StackWork work;
+    // A ray without a path has the rest of its stack on chip.
     if (!state.path || has_left_stack(state)) forgotten = 0;
     if (forgotten > 0 && state.stack_size <= forgotten) {
       // The ray goes down again to find the newest of these entries.
       const int sought = state.stack_size > 0 ? state.stack_size : forgotten;
-      work.replays = uint16_t(state.path->parent[size_t(sought) - 1] + 1);
+      work.replays = uint8_t(state.path->parent[size_t(sought) - 1] + 1);  // 0: it is the root
       forgotten = 0;
     }
     if (state.path && state.stack_size - forgotten > int(params_.entries))

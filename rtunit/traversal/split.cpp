@@ -17,7 +17,10 @@ void clear_counts(RayState& part) {
 }
 
 void remove_entry(RayState& s, size_t entry) {
-  for (size_t i = entry; i + 1 < size_t(s.stack_size); ++i) s.stack.set(i, s.stack[i + 1]);
+  for (size_t i = entry; i + 1 < size_t(s.stack_size); ++i) {
+    s.stack.set(i, s.stack[i + 1]);
+    if (s.path) s.path->parent[i] = s.path->parent[i + 1];
+  }
   --s.stack_size;
   if (int(entry) < s.bottom_stack_base) --s.bottom_stack_base;
 }

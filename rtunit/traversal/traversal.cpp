@@ -105,10 +105,8 @@ void visit_internal(RayState& s, const std::byte* bytes) {
     push_by_rules<Format>(s, entered, t_enter, child);
 }
 
-void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
-  const auto leaf = load<InstanceLeaf>(bytes);
-  ++s.instances_visited;
-  if ((leaf.mask() & s.ray.cull_mask) == 0) return;
+// Enters the instance whose leaf lies at `at`. The node of its structure is the ray's next one.
+void enter_instance(RayState& s, const InstanceLeaf& leaf, Address at, const StackEntry& next) {
   const auto& m = leaf.world_to_object;
   const auto& o = s.ray.origin;
   const auto& d = s.ray.direction;
@@ -118,14 +116,22 @@ void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry
     direction[r] = (m[4 * r] * d[0] + m[4 * r + 1] * d[1]) + m[4 * r + 2] * d[2];
   }
   enter_space(s.space, origin, direction);
-  s.instance_leaf = s.base + Address(block_of(entry.node)) * kBlockBytes;
+  s.instance_leaf = at;
   s.base = leaf.structure;
   s.instance = leaf.instance;
   s.instance_flags = leaf.flags();
   s.instance_custom_index = leaf.custom_index();
   s.instance_sbt_record = leaf.sbt_offset();
   s.bottom_stack_base = s.stack_size;
-  push(s, node_ref(kRootBlock, NodeKind::Internal), entry.t_enter);
+  push(s, next.node, next.t_enter);
+}
+
+void visit_instance(RayState& s, const std::byte* bytes, const StackEntry& entry) {
+  const auto leaf = load<InstanceLeaf>(bytes);
+  ++s.instances_visited;
+  if ((leaf.mask() & s.ray.cull_mask) == 0) return;
+  enter_instance(s, leaf, s.base + Address(block_of(entry.node)) * kBlockBytes,
+                 {node_ref(kRootBlock, NodeKind::Internal), entry.t_enter});
 }
 
 // The instance's flags override the geometry's, and the ray's flags override both.
@@ -325,6 +331,33 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
 
 void step(RayState& s, const std::byte* bytes) {
   kFormats[s.format].step(s, bytes);
+}
+
+bool start_at(RayState& s, const mem::AddressSpace& memory, const Start& start) {
+  GLINT_DCHECK(s.nodes_visited == 0 && s.stack_size == 1, "the ray has begun its walk already");
+  const std::byte* bytes = memory.find(start.instance_leaf, sizeof(InstanceLeaf));
+  if (!bytes) return false;
+  const auto leaf = load<InstanceLeaf>(bytes);
+  const std::byte* below = memory.find(leaf.structure, sizeof(StructureHeader));
+  if (!below || (leaf.mask() & s.ray.cull_mask) == 0 || culled_by_kind(s, start.kind)) return false;
+  const auto header = load<StructureHeader>(below);
+  const Address offset = start.node - leaf.structure;  // more than any structure has for a node before it
+  const bool fits = header.magic == StructureHeader::kMagic && header.level == 0 &&
+                    header.format == s.format && header.stack_need < kStackEntries &&
+                    offset % kBlockBytes == 0 && offset < std::min(header.bytes, kMostBytes);
+  if (!fits) return false;
+  ++s.instances_visited;
+  enter_instance(s, leaf, start.instance_leaf,
+                 {node_ref(uint32_t(offset / kBlockBytes), start.kind), s.ray.t_min});
+  return true;
+}
+
+std::optional<Start> start_above(const RayState& s, const Hit& hit, uint32_t levels) {
+  if (!s.path || s.path->depth == RayPath::kNoParent) return std::nullopt;
+  size_t depth = s.path->depth;
+  for (; levels && depth > 0 && s.path->node[depth - 1].kind != NodeKind::Instance; --levels) --depth;
+  const Fetch& node = s.path->node[depth];
+  return Start{hit.instance_leaf, node.address, node.kind};
 }
 
 void break_off(RayState& s) {

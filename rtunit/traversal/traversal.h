@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "memsys/address_space.h"
 #include "rtunit/structure/structure.h"
@@ -36,6 +37,24 @@ inline Fetch fetch_of_entry(const RayState& state, size_t entry) {
 
 // Visits the node of next_fetch(). Afterwards the ray is Traversing, Done, Gathered or needs a shader.
 void step(RayState& state, const std::byte* bytes);
+
+// Names a node below an instance at which a ray may begin its walk. Addresses are virtual.
+struct Start {
+  Address instance_leaf = 0;
+  Address node = 0;
+  NodeKind kind = NodeKind::Internal;  // of the node
+  bool operator==(const Start&) const = default;
+};
+
+// Makes a ray that has visited no node yet walk the subtree of a node first and then everything from the
+// root. The primitives of the subtree are tested twice unless a hit among them ends the ray, which changes no
+// hit. Returns false, and leaves the ray at the root, when the ray's mask or flags skip the instance or the
+// node, when there is no such node, or when the ray's stack might not have room for one more entry.
+bool start_at(RayState& state, const mem::AddressSpace& memory, const Start& start);
+
+// Returns the node `levels` above the leaf that the ray has visited last and that holds `hit`: at most the
+// root of the same bottom level. A ray that keeps no path has none.
+std::optional<Start> start_above(const RayState& state, const Hit& hit, uint32_t levels);
 
 // Ends a ray whose next node lies outside memory: it is Done and `broken`.
 void break_off(RayState& state);

@@ -109,6 +109,7 @@ void RayWalk::stop(uint32_t slot, int lane, Cycle now) {
     ++stats_.finished;
   else
     ++stats_.suspended;
+  for (WalkHook* hook : hooks_) hook->stopped(slot, lane);
   buffer_.stop(slot, lane, now);
 }
 

@@ -11,6 +11,8 @@
 #include "base/check.h"
 #include "rtunit/shortcuts/hit_stores.h"
 #include "rtunit/shortcuts/split_reads.h"
+#include "rtunit/unit/entry_look_up.h"
+#include "rtunit/unit/path_keeper.h"
 #include "rtunit/unit/result_writer.h"
 #include "rtunit/unit/stack_mover.h"
 #include "rtunit/unit/table_writer.h"
@@ -57,8 +59,13 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
         add<HitStores>(shortcuts.store_latency, context.l1, buffer_, stats_, context.results, has_tables);
     before_tests_.push_back([&stores](Cycle now) { stores.acknowledge(now); });
   }
-  if (auto model = params.stack.make({}); StackMover::is_needed(*model))
-    add<StackMover>(std::move(model), context.stacks, context.l1, buffer_, fetches_, stats_);
+  auto stack = params.stack.make({});
+  std::unique_ptr<RayEntry> entry;
+  if (params.entry.name != RayEntry::kRoot) entry = params.entry.make({&stats_, context.memory});
+  if (stack->keeps_path() || (entry && entry->wants_path())) add<PathKeeper>(buffer_);
+  if (entry) add<EntryLookUp>(std::move(entry), context.memory, buffer_, pipelines_, stats_);
+  if (StackMover::is_needed(*stack))
+    add<StackMover>(std::move(stack), context.stacks, context.l1, buffer_, fetches_, stats_);
   if (shortcuts.fetch_headers || shortcuts.fetch_descriptors)
     add<SplitReads>(shortcuts, context.memory, buffer_, pipelines_, stats_);
   if (params.result_store) add<ResultWriter>(context.l1, buffer_, stats_, context.results);

@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "base/check.h"
-
 namespace glint::rt {
 
 StackMover::StackMover(std::unique_ptr<StackModel> model, Address stacks, mem::L1Port& l1, WarpBuffer& buffer,
@@ -20,30 +18,11 @@ StackMover::StackMover(std::unique_ptr<StackModel> model, Address stacks, mem::L
 }
 
 void StackMover::entered(uint32_t slot, int lane, Cycle) {
-  RayState& ray = buffer_[slot].ray_of(lane);
-  if (model_->keeps_path()) keep_path(ray, buffer_[slot].warp_slot, lane);
-  work_of(slot, lane) = model_->settle(ray);
+  work_of(slot, lane) = model_->settle(buffer_[slot].ray_of(lane));
 }
 
 void StackMover::visited(const Visit& visit) {
   work_of(visit.slot, visit.lane) = model_->settle(visit.ray);
-}
-
-// Model: a ray loses its path when it waits for a shader and a second ray of its lane overtakes it (a ray
-// query in an any-hit shader). The rest of its stack then counts as on chip.
-void StackMover::keep_path(RayState& ray, uint32_t warp_slot, int lane) {
-  if (paths_.size() <= warp_slot) paths_.resize(warp_slot + 1);
-  if (!paths_[warp_slot]) paths_[warp_slot] = std::make_unique<WarpPaths>();
-  RayPath& path = (*paths_[warp_slot])[size_t(lane)];
-  if (ray.nodes_visited == 0) {
-    GLINT_DCHECK(ray.stack_size == 1, "a new ray has {} nodes to visit", ray.stack_size);
-    path.ray = &ray;
-    path.depth = path.parent[0] = RayPath::kNoParent;
-    ray.path = &path;
-  } else if (ray.path != &path || path.ray != &ray) {
-    ray.path = nullptr;
-    ray.stack_off_chip = 0;
-  }
 }
 
 // A lane does not wait for its spills. It waits for its fills and repeated visits, which follow one another.

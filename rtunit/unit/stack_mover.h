@@ -46,9 +46,6 @@ class StackMover final : public RequestSource, public WalkHook {
     uint8_t lane = 0;
     bool is_fill = false;
   };
-  using WarpPaths = std::array<RayPath, kLanes>;
-
-  void keep_path(RayState& ray, uint32_t warp_slot, int lane);
   StackWork& work_of(uint32_t slot, int lane) { return work_[slot][size_t(lane)]; }
 
   const std::unique_ptr<StackModel> model_;
@@ -59,7 +56,6 @@ class StackMover final : public RequestSource, public WalkHook {
   RtStats& stats_;
   std::vector<std::array<StackWork, kLanes>> work_;  // work left before the lane's next node, by slot
   mem::Ring<Move> moves_;
-  std::vector<std::unique_ptr<WarpPaths>> paths_;  // by the core's warp slot
 };
 
 }  // namespace glint::rt

@@ -23,6 +23,8 @@ class WalkHook {
   virtual void visited(const Visit&) {}
   // Tells that the test of the lane's read has ended, whoever asked for it.
   virtual void test_ended(uint32_t /*slot*/, int /*lane*/) {}
+  // Tells that the lane's own ray goes back to the core, because its walk has ended or it needs a shader.
+  virtual void stopped(uint32_t /*slot*/, int /*lane*/) {}
 };
 
 }  // namespace glint::rt

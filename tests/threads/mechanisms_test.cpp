@@ -56,6 +56,7 @@ const std::vector<Mechanism> kMechanisms = {
      [](GpuParams& p) { p.rt.coalescing = PolicyChoice<rt::Coalescer>("each_lane"); }},
     {"deferred any-hit", [](GpuParams& p) { p.rt.any_hit = PolicyChoice<rt::AnyHitMode>("deferred"); }},
     {"result stores", [](GpuParams& p) { p.rt.result_store = true; }},
+    {"predicted starts", [](GpuParams& p) { p.rt.entry = PolicyChoice<rt::RayEntry>("predictor"); }},
     {"lanes that help each other",
      [](GpuParams& p) { p.rt.mapping = PolicyChoice<rt::WorkMapping>("cooperative"); }},
     {"prefetches from stacks",
