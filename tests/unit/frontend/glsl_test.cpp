@@ -235,6 +235,17 @@ TEST_CASE("a module is validated once before it is simplified, and again when it
   CHECK(validations(glsl) == std::vector<std::string>{"before", "after"});
 }
 
+TEST_CASE("a message of the validator calls values by their names") {
+  const std::string text =
+      "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint GLCompute %main \"main\"\n"
+      "OpExecutionMode %main LocalSize 1 1 1\nOpName %sum \"sum\"\n%void = OpTypeVoid\n"
+      "%type = OpTypeFunction %void\n%uint = OpTypeInt 32 0\n%float = OpTypeFloat 32\n%one = OpConstant "
+      "%uint 1\n"
+      "%main = OpFunction %void None %type\n%label = OpLabel\n%sum = OpFAdd %float %one %one\nOpReturn\n"
+      "OpFunctionEnd\n";
+  CHECK_THAT(validate_spirv(assemble_spirv(text, "t.spvasm")), Contains("%sum = OpFAdd %float %uint_1"));
+}
+
 TEST_CASE("words that are not a valid module are refused") {
   Diagnostics warnings;
   CHECK_THROWS_AS(simplify({1, 2, 3}, "x", warnings), UserError);
