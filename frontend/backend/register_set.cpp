@@ -9,7 +9,12 @@ bool RegisterSet::unite(const RegisterSet& other) {
   for (size_t i = 0; i < chunk_of_.size(); ++i) {
     if (other.chunk_of_[i] == 0) continue;
     const Chunk& more = other.chunks_[other.chunk_of_[i] - 1];
-    if (chunk_of_[i] == 0) chunk_of_[i] = add({});
+    if (chunk_of_[i] == 0) {
+      if (more == Chunk{}) continue;  // All its members were erased.
+      chunk_of_[i] = add(more);
+      grew = true;
+      continue;
+    }
     Chunk& mine = chunks_[chunk_of_[i] - 1];
     for (size_t w = 0; w < mine.size(); ++w) {
       const uint64_t all = mine[w] | more[w];

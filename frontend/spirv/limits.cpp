@@ -165,6 +165,12 @@ uint32_t nesting_of(const std::vector<uint32_t>& words) {
   return deepest_of(Reader().read(words), kConstructs).depth[kConstructs];
 }
 
+uint64_t largest_variable(const std::vector<uint32_t>& words) {
+  uint64_t most = 0;
+  for (const auto& [id, variable] : Reader().read(words).variables) most = std::max(most, variable.bytes);
+  return most;
+}
+
 void check_limits(const std::vector<uint32_t>& words, const std::string& name, uint32_t deepest) {
   Reader reader;
   const Survey module = reader.read(words);

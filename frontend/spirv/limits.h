@@ -11,8 +11,9 @@ namespace glint::frontend {
 // if` counts one for each link. Source: SPIR-V specification, 2.17 ("Control-flow nesting depth").
 inline constexpr uint32_t kDeepestNesting = 1023;
 
-// The most loops among them. Choice: 255 take the optimiser 2 s, and 1,000 take it more than a minute.
-inline constexpr uint32_t kDeepestLoops = 255;
+// The most loops among them. Choice: the times of the installed tools grow with the cube of the depth; 127
+// take them 1 s, and 250 take them 7 s.
+inline constexpr uint32_t kDeepestLoops = 127;
 
 // The deepest nesting that the validator looks at. Choice: its time grows with the cube of the depth; 255
 // take it 0.4 s, and 1,000 take it 25 s. validate_spirv() lets deeper modules pass, which only glslang may
@@ -21,6 +22,9 @@ inline constexpr uint32_t kDeepestValidated = 255;
 
 // Returns how deep selections and loops lie in each other. The module need not be valid.
 uint32_t nesting_of(const std::vector<uint32_t>& words);
+
+// Returns the bytes of the largest variable of one thread. The module need not be valid.
+uint64_t largest_variable(const std::vector<uint32_t>& words);
 
 // Throws UnsupportedError with file and line for a variable above kMostLocalBytes, a nesting above `deepest`,
 // or loops above kDeepestLoops. The module need not be valid.

@@ -1,5 +1,4 @@
-// Runs the pass list R1 of SPIRV-Tools: everything is inlined, scalarised and in SSA form, and no result of
-// arithmetic changes.
+// Runs the pass list R1 of SPIRV-Tools (passes.h) and what Glint does before, between and after its passes.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
@@ -20,6 +19,7 @@
 #include "frontend/spirv/kept_loops.h"
 #include "frontend/spirv/limits.h"
 #include "frontend/spirv/module_repairs.h"
+#include "frontend/spirv/passes.h"
 #include "frontend/spirv/promoted_variables.h"
 #include "frontend/spirv/shared_blocks.h"
 #include "frontend/spirv/short_blocks.h"
@@ -29,104 +29,6 @@
 
 namespace glint::frontend {
 namespace {
-
-// This pass is always first, because imports of non-semantic sets make later passes skip the module.
-constexpr const char* kStripForeign = "--strip-nonsemantic";
-constexpr const char* kSsaRewrite = "--ssa-rewrite";
-
-// Choice: modules with more instructions after inlining are optimised in parts (after_passes()). Smaller ones
-// cannot have functions that need it, and reading them again for each part would cost time.
-constexpr uint64_t kLargeModule = 8192;
-
-// Choice: from this many instructions after inlining on, all variables are promoted by Glint, and passes are
-// left out that then find little. This halves the time of a public path tracer of 100,000 instructions, whose
-// program gets 3 % longer. Inserts into vectors and structs that nobody reads stay, too; to drop them takes
-// that path tracer more than a minute. Lowering makes no instructions of them, because it knows the scalars
-// of a value.
-constexpr uint64_t kVeryLargeModule = 32'768;
-
-// Some passes of -O are left out on purpose. Redundancy elimination merges loads of volatile built-ins across
-// reportIntersectionEXT, simplify-instructions contracts a*b+c to Fma, ccp folds sin and cos with the host's
-// libm, and if-conversion removes divergence that hardware has.
-const std::vector<std::string>& passes_until_inlined() {
-  static const std::vector<std::string> kPasses = {
-      kStripForeign, "--freeze-spec-const", "--fold-spec-const-op-composite", "--wrap-opkill",
-      "--eliminate-dead-branches", "--merge-return",
-      // Each function is optimised on its own first, because code that is already in SSA form costs little in
-      // the copies that inlining makes.
-      "--eliminate-dead-functions", "--eliminate-local-single-block", "--eliminate-local-single-store",
-      "--scalar-replacement=100", "--convert-local-access-chains", "--eliminate-local-single-block",
-      "--eliminate-local-single-store", kSsaRewrite,
-      // Two passes are left out here. Removal of dead code crashes on calls that take addresses of buffers.
-      // Merging of blocks moves calls into continue constructs, where functions that end an any-hit shader
-      // are not inlined.
-      "--inline-entry-points-exhaustive", "--eliminate-dead-functions", "--eliminate-dead-code-aggressive"};
-  return kPasses;
-}
-
-const std::vector<std::string>& passes_when_inlined() {
-  static const std::vector<std::string> kPasses = {"--private-to-local",
-                                                   "--eliminate-local-single-block",
-                                                   "--eliminate-local-single-store",
-                                                   "--eliminate-dead-code-aggressive",
-                                                   "--scalar-replacement=100",
-                                                   "--convert-local-access-chains",
-                                                   "--eliminate-local-single-block",
-                                                   "--eliminate-local-single-store",
-                                                   "--eliminate-dead-code-aggressive",
-                                                   kSsaRewrite,
-                                                   "--eliminate-dead-code-aggressive",
-                                                   "--vector-dce",
-                                                   "--eliminate-dead-inserts",
-                                                   "--eliminate-dead-branches",
-                                                   "--cfg-cleanup",
-                                                   "--merge-blocks",
-                                                   "--eliminate-dead-code-aggressive",
-                                                   "--eliminate-dead-const"};
-  return kPasses;
-}
-
-// These passes are those of a very large module.
-const std::vector<std::string>& few_passes_when_inlined() {
-  static const std::vector<std::string> kPasses = {"--private-to-local",
-                                                   "--scalar-replacement=100",
-                                                   "--convert-local-access-chains",
-                                                   kSsaRewrite,
-                                                   "--eliminate-dead-code-aggressive",
-                                                   "--vector-dce",
-                                                   "--eliminate-dead-branches",
-                                                   "--cfg-cleanup",
-                                                   "--merge-blocks",
-                                                   "--eliminate-dead-const"};
-  return kPasses;
-}
-
-std::vector<std::string> pass_list(const InlinedSize& size) {
-  std::vector<std::string> out = passes_until_inlined();
-  const bool is_very_large = size.instructions > kVeryLargeModule;
-  const std::vector<std::string>& more = is_very_large ? few_passes_when_inlined() : passes_when_inlined();
-  out.insert(out.end(), more.begin(), more.end());
-  return out;
-}
-
-// These passes only fold constants, before lengths of arrays are looked at.
-const std::vector<std::string>& constants_only() {
-  static const std::vector<std::string> kPasses = {kStripForeign, "--freeze-spec-const",
-                                                   "--fold-spec-const-op-composite"};
-  return kPasses;
-}
-
-// These passes are used when R1 makes an invalid module. They only inline functions.
-const std::vector<std::string>& inlining_only() {
-  static const std::vector<std::string> kPasses = {kStripForeign,
-                                                   "--freeze-spec-const",
-                                                   "--fold-spec-const-op-composite",
-                                                   "--wrap-opkill",
-                                                   "--merge-return",
-                                                   "--inline-entry-points-exhaustive",
-                                                   "--eliminate-dead-functions"};
-  return kPasses;
-}
 
 // Removes declarations of extensions, because many passes silently skip a module that declares an extension
 // they do not list. The capability that the extension allows stays, so the declaration is needed again only
@@ -203,22 +105,29 @@ std::vector<uint32_t> optimise(const std::vector<uint32_t>& input, std::span<con
   return done ? output : std::vector<uint32_t>{};
 }
 
-// Returns the module after `passes`. When they fail, it returns nothing, and the report says why. In a large
-// module, what is too much for ssa-rewrite is promoted before it, and in a very large one all that can be.
-std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
-                                   const InlinedSize& size, Report* report) {
-  const bool is_large = size.instructions > kLargeModule;
+bool has_local_variables(const std::vector<uint32_t>& spirv) {
+  for (size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16)
+    if (op_of(spirv[at]) == spv::Op::OpVariable &&
+        spv::StorageClass(spirv[at + 3]) == spv::StorageClass::Function)
+      return true;
+  return false;
+}
+
+// Returns the module after `passes`. When they fail, it returns nothing, and the report says why.
+std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const PassList& passes,
+                                   Report* report) {
   std::vector<uint32_t> extensions;
   std::vector<uint32_t> output = without_extensions(spirv, &extensions);
   allow_inlining(output);
   const bool has_overlap = has_overlapping_shared_blocks(output);
   if (has_overlap) move_variables(output, spv::StorageClass::Workgroup, spv::StorageClass::CrossWorkgroup);
-  const uint32_t most_accesses = size.instructions > kVeryLargeModule ? 0 : kMostAccesses;
-  for (auto first = passes.begin(); first != passes.end() && !output.empty();) {
-    const auto last = is_large ? std::find(first + 1, passes.end(), kSsaRewrite) : passes.end();
-    if (*first == kSsaRewrite) {
+  const auto end = passes.names.end();
+  for (auto first = passes.names.begin(); first != end && !output.empty();) {
+    const auto last = passes.promotes_over ? std::find(first + 1, end, kSsaRewrite) : end;
+    if (*first == kSsaRewrite && passes.promotes_over) {
       const PassTimer timer(report->times, "promotion", "");
-      output = with_promoted_variables(std::move(output), most_accesses);
+      output = with_promoted_variables(std::move(output), *passes.promotes_over);
+      if (!has_local_variables(output)) ++first;  // Nothing is left for ssa-rewrite.
     }
     output = optimise(output, {first, last}, report);
     first = last;
@@ -229,10 +138,9 @@ std::vector<uint32_t> after_passes(const std::vector<uint32_t>& spirv, const std
 }
 
 // Returns the module after `passes`, or nothing when they fail or their result is not valid.
-std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv,
-                                         const std::vector<std::string>& passes, const InlinedSize& size,
+std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv, const PassList& passes,
                                          Report* report) {
-  std::vector<uint32_t> output = after_passes(spirv, passes, size, report);
+  std::vector<uint32_t> output = after_passes(spirv, passes, report);
   if (output.empty()) return {};
   output = with_marks_in_place(with_debug_prints(without_marks(output)));
   const std::string after = timed_validation(output, "after", report->times);
@@ -246,7 +154,7 @@ constexpr uint64_t kMostMarkedCalls = 2000;
 
 // Returns the valid module after `passes`. Functions are marked first, if possible, so that inlined code
 // names its calls.
-std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::vector<std::string>& passes,
+std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const PassList& passes,
                                 const InlinedSize& size, Report* report) {
   // A block with few calls can become one with many, when the callees have calls in their turn.
   const uint32_t calls_of_block = size.calls <= kMostMarkedCalls ? 64 : 1;
@@ -258,11 +166,12 @@ std::vector<uint32_t> optimised(const std::vector<uint32_t>& spirv, const std::v
     // The first pass strips foreign sets, so it would strip the marks. A marked module does not need it,
     // because it has no other such sets.
     Report of_marks{{}, report->times};
-    std::vector<uint32_t> output =
-        valid_after_passes(*marked, {passes.begin() + 1, passes.end()}, size, &of_marks);
+    PassList later = passes;
+    later.names.erase(later.names.begin());
+    std::vector<uint32_t> output = valid_after_passes(*marked, later, &of_marks);
     if (!output.empty()) return output;
   }
-  return valid_after_passes(input, passes, size, report);
+  return valid_after_passes(input, passes, report);
 }
 
 // Changes array lengths from 0 to 1 when they are 0 because nobody set a specialisation constant.
@@ -271,7 +180,7 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
   if (!has_specialised_lengths(spirv)) return spirv;
   Report report;
   std::vector<std::string> names;
-  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), {}, &report);
+  std::vector<uint32_t> folded = after_passes(spirv, constants_only(), &report);
   if (folded.empty()) return spirv;
   std::vector<uint32_t> output = with_positive_lengths(folded, &names);
   if (output.size() == folded.size()) return spirv;
@@ -300,7 +209,7 @@ std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string&
   spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
   const InlinedSize size = check_inlined_size(spirv, name);
   Report report{{}, times};
-  for (const std::vector<std::string>& passes : {pass_list(size), inlining_only()}) {
+  for (const PassList& passes : {passes_of(spirv, size), inlining_only()}) {
     std::vector<uint32_t> output = optimised(spirv, passes, size, &report);
     if (output.empty()) continue;
     if (!has_calls(output)) return output;

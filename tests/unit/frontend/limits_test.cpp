@@ -55,6 +55,10 @@ std::string nested_macros(int levels) {
          });
 }
 
+std::string nested_loops(int depth) {
+  return times(depth, "for (int i = 0; i < int(x); ++i) {\n") + "x *= 1.5;" + times(depth, "}");
+}
+
 TEST_CASE("what is too large, too deep or too long is refused at its file and line") {
   struct Row {
     std::string name, source, message;
@@ -64,8 +68,8 @@ TEST_CASE("what is too large, too deep or too long is refused at its file and li
        "t.comp:1103: selections and loops lie 1100 deep in each other, with those of called functions, and "
        "at most "
        "1023 are possible"},
-      {"loops", shader(times(300, "for (int i = 0; i < int(x); ++i) {\n") + "x += 1.0;" + times(300, "}")),
-       ": loops lie 300 deep in each other, with those of called functions, and at most 255"},
+      {"loops", shader(nested_loops(128)),
+       "t.comp:131: loops lie 128 deep in each other, with those of called functions, and at most 127"},
       {"nesting of called functions",
        shader("x = f(x);" + times(600, "if (x > 2.0) {\n") + "x = f(x);" + times(600, "}"),
               "float f(float x) {\n" + times(500, "if (x > 2.0) {") + "\nx += 1.0;\n" + times(500, "}") +
@@ -97,6 +101,7 @@ TEST_CASE("the largest array, the deepest nesting and long texts compile") {
   const int deepest = int(kDeepestNesting);
   CHECK(count_ops(compiled(shader(times(deepest, "if (x > 2.0) {\n") + "x *= 1.5;" + times(deepest, "}"))),
                   "mul.rn.f32") == 1);
+  CHECK(count_ops(compiled(shader(nested_loops(int(kDeepestLoops)))), "mul.rn.f32") == 1);
   CHECK(count_ops(compiled(shader("x = x" + times(20'000, " + x") + ";")), "add.rn.f32") == 20'000);
   CHECK(count_ops(compiled(shader("x = A8 x;", nested_macros(8))), "add.rn.f32") == 256);
 }
@@ -132,6 +137,34 @@ TEST_CASE("a thousand cases of a switch and a thousand selections in a row compi
   });
   CHECK(count_ops(compiled(shader("switch (int(v[1])) {" + cases + "}")), "mul.rn.f32") == 1000);
   CHECK(count_ops(compiled(shader(times(1000, "if (x > v[3]) x = sqrt(x);\n"))), "setp.gt.f32") == 1000);
+}
+
+TEST_CASE("a few members of a large array or struct are values of their own, in selections too") {
+  const auto stores = [](const std::string& member) {
+    return times(500, [&](int i) {
+      return "if (x > " + std::to_string(i) + ".0) " + member + (member == "s.a" ? "" : "[") +
+             std::to_string(i) + (member == "s.a" ? "" : "]") + " = v[" + std::to_string(i) + "];\n";
+    });
+  };
+  const isa::Program array = compiled(shader("float a[20000];\n" + stores("a") + "x += a[7] * a[8];"));
+  CHECK(array.local_bytes == 0);
+  CHECK(count_ops(array, "mul.rn.f32") == 1);
+  const std::string members = times(3000, [](int i) { return "float a" + std::to_string(i) + ";"; });
+  const isa::Program of_struct =
+      compiled(shader("S s;\n" + stores("s.a") + "x += s.a7 * s.a8;", "\nstruct S {" + members + "};\n"));
+  CHECK(of_struct.local_bytes == 0);
+  CHECK(count_ops(of_struct, "mul.rn.f32") == 1);
+}
+
+TEST_CASE("a table of 20,000 numbers and 3,000 functions with parameters of one name compile") {
+  const std::string numbers = times(20'000, [](int i) { return ", " + std::to_string(i) + ".25"; });
+  const isa::Program program =
+      compiled(shader("x = t[int(x)];", "\nconst float t[20001] = float[](0.25" + numbers + ");\n"));
+  CHECK(program.constants.size() >= 20'001);
+  const std::string functions =
+      times(3000, [](int i) { return "float f" + std::to_string(i) + "(float x) { return x * 1.5; }\n"; });
+  const std::string calls = times(3000, [](int i) { return "x = f" + std::to_string(i) + "(x);\n"; });
+  CHECK(count_ops(compiled(shader(calls, "\n" + functions)), "mul.rn.f32") == 3000);
 }
 
 TEST_CASE("a block with many calls is cut, and phis name the part that a value now comes from") {
