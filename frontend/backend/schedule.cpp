@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "frontend/backend/liveness.h"
 
@@ -216,6 +219,27 @@ class Run {
     return more;
   }
 
+  // Returns growth(), which is computed again only after forget_growth().
+  Pressure known_growth(size_t i, const RegisterSet& live,
+                        const std::vector<std::pair<VirtualRegister, uint32_t>>& uses_left) {
+    if (!growth_[i]) growth_[i] = growth(i, live, uses_left);
+    return *growth_[i];
+  }
+  void forget_growth(VirtualRegister r) {
+    const auto begin =
+        std::lower_bound(register_users_.begin(), register_users_.end(), std::pair(r, size_t{0}));
+    for (auto at = begin; at != register_users_.end() && at->first == r; ++at) growth_[at->second].reset();
+  }
+  void index_registers() {
+    growth_.assign(code_.size(), std::nullopt);
+    for (size_t i = 0; i < code_.size(); ++i) {
+      const auto add = [&](VirtualRegister r) { register_users_.emplace_back(r, i); };
+      for_each_def(code_[i], add);
+      for_each_use(code_[i], add);
+    }
+    std::sort(register_users_.begin(), register_users_.end());
+  }
+
   // Returns how many instructions still to come read `r`.
   static uint32_t uses_of(const std::vector<std::pair<VirtualRegister, uint32_t>>& uses, VirtualRegister r) {
     const auto at = std::lower_bound(uses.begin(), uses.end(), r,
@@ -248,6 +272,7 @@ class Run {
 
   std::vector<VirtualInst> list_schedule(Pressure comfortable) {
     std::vector<std::pair<VirtualRegister, uint32_t>> uses_left = count_uses();
+    index_registers();
     RegisterSet live = live_in_;
     Pressure now = count(live);
     std::vector<size_t> ready;
@@ -256,9 +281,9 @@ class Run {
     std::vector<VirtualInst> out;
     for (uint32_t cycle = 0; !ready.empty(); ++cycle) {
       size_t best = 0;
-      Pressure best_growth = growth(ready[0], live, uses_left);
+      Pressure best_growth = known_growth(ready[0], live, uses_left);
       for (size_t k = 1; k < ready.size(); ++k) {
-        const Pressure candidate = growth(ready[k], live, uses_left);
+        const Pressure candidate = known_growth(ready[k], live, uses_left);
         if (!is_better(ready[k], candidate, ready[best], best_growth, cycle, now, comfortable)) continue;
         best = k;
         best_growth = candidate;
@@ -296,8 +321,12 @@ class Run {
       const auto at = std::lower_bound(uses_left.begin(), uses_left.end(), r,
                                        [](const auto& a, VirtualRegister b) { return a.first < b; });
       if (--at->second == 0 && !live_out_.contains(r)) live.erase(r);
+      if (at->second <= 1) forget_growth(r);
     });
-    for_each_def(code_[chosen], [&](VirtualRegister r) { live.insert(r); });
+    for_each_def(code_[chosen], [&](VirtualRegister r) {
+      if (!live.contains(r)) forget_growth(r);
+      live.insert(r);
+    });
     for (const Edge& edge : nodes_[chosen].after) {
       Node& next = nodes_[edge.to];
       next.earliest = std::max(next.earliest, cycle + edge.delay);
@@ -310,6 +339,8 @@ class Run {
   RegisterSet live_in_, live_out_;
   const uint32_t guard_latency_;
   std::vector<Node> nodes_;
+  std::vector<std::pair<VirtualRegister, size_t>> register_users_;  // sorted: what reads or writes a register
+  std::vector<std::optional<Pressure>> growth_;                     // by instruction; empty: to be computed
 };
 
 }  // namespace

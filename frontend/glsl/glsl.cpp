@@ -143,7 +143,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
   check_limits(words, path);
-  const std::string invalid = validate_spirv(words);
+  const std::string invalid = validate_made_spirv(words);
   if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
   return words;
 }

@@ -159,7 +159,44 @@ Place deepest_of(const Survey& module, Kind kind) {
   return deepest;
 }
 
+// Returns how many calls lie in each other below a function. A function that calls itself is refused
+// elsewhere.
+uint32_t call_depth_of(const Survey& module, uint32_t id, std::map<uint32_t, uint32_t>& known) {
+  if (const auto found = known.find(id); found != known.end()) return found->second;
+  uint32_t depth = known[id] = 0;
+  if (const auto function = module.functions.find(id); function != module.functions.end())
+    for (const Survey::Call& call : function->second.calls)
+      depth = std::max(depth, 1 + call_depth_of(module, call.callee, known));
+  return known[id] = depth;
+}
+
+// Returns the depth of calls, and the line of the first one that lies deeper than kDeepestCalls.
+std::pair<uint32_t, isa::Line> deepest_call(const Survey& module) {
+  std::map<uint32_t, uint32_t> depth;
+  uint32_t at = 0;  // an id
+  for (const auto& [id, function] : module.functions)
+    if (call_depth_of(module, id, depth) > depth[at]) at = id;
+  const uint32_t deepest = depth[at];
+  isa::Line line;
+  for (uint32_t i = 0; i <= kDeepestCalls && i < deepest; ++i) {
+    const std::vector<Survey::Call>& calls = module.functions.at(at).calls;
+    const auto next = std::find_if(calls.begin(), calls.end(), [&](const Survey::Call& call) {
+      return depth[call.callee] + 1 == depth[at];
+    });
+    line = next->at.line;
+    at = next->callee;
+  }
+  return {deepest, line};
+}
+
 }  // namespace
+
+uint32_t selections_and_loops_of(const std::vector<uint32_t>& words) {
+  uint32_t count = 0;
+  for (size_t at = kHeaderWords; at < words.size() && words[at] >> 16 != 0; at += words[at] >> 16)
+    count += op_of(words[at]) == OpSelectionMerge || op_of(words[at]) == OpLoopMerge;
+  return count;
+}
 
 uint32_t nesting_of(const std::vector<uint32_t>& words) {
   return deepest_of(Reader().read(words), kConstructs).depth[kConstructs];
@@ -197,6 +234,9 @@ void check_limits(const std::vector<uint32_t>& words, const std::string& name, u
           fmt::format("{} lie {} deep in each other, with those of called functions, and at most {} "
                       "are possible",
                       what, place.depth[kind], most));
+  if (const auto [depth, line] = deepest_call(module); depth > kDeepestCalls)
+    add(line, fmt::format("calls of functions lie {} deep in each other, and at most {} are possible", depth,
+                          kDeepestCalls));
   if (!message.empty()) throw UnsupportedError(fmt::format("{}: not supported:{}", name, message));
 }
 

@@ -12,11 +12,12 @@
 namespace glint::frontend {
 namespace {
 
-using Names = std::vector<std::string>;
+using PassNames = std::vector<std::string>;
 
 // This pass is always first, because imports of non-semantic sets make later passes skip the module.
 constexpr const char* kStripForeign = "--strip-nonsemantic";
 constexpr const char* kSplit = "--scalar-replacement=100";
+constexpr const char* kDropCode = "--eliminate-dead-code-aggressive";
 constexpr const char* kDropConstants = "--eliminate-dead-const";
 
 // Choice: modules with more instructions after inlining are optimised in parts (PassList::promotes_over).
@@ -53,19 +54,19 @@ uint32_t most_constant_members(const std::vector<uint32_t>& spirv) {
 // Some passes of -O are left out on purpose. Redundancy elimination merges loads of volatile built-ins across
 // reportIntersectionEXT, simplify-instructions contracts a*b+c to Fma, ccp folds sin and cos with the host's
 // libm, and if-conversion removes divergence that hardware has.
-const Names& passes_before_all() {
-  static const Names kPasses = {kStripForeign,
-                                "--freeze-spec-const",
-                                "--fold-spec-const-op-composite",
-                                "--wrap-opkill",
-                                "--eliminate-dead-branches",
-                                "--merge-return",
-                                "--eliminate-dead-functions"};
+const PassNames& passes_before_all() {
+  static const PassNames kPasses = {kStripForeign,
+                                    "--freeze-spec-const",
+                                    "--fold-spec-const-op-composite",
+                                    "--wrap-opkill",
+                                    "--eliminate-dead-branches",
+                                    "--merge-return",
+                                    "--eliminate-dead-functions"};
   return kPasses;
 }
 
-const Names& passes_until_inlined() {
-  static const Names kPasses = {
+const PassNames& passes_until_inlined() {
+  static const PassNames kPasses = {
       // Each function is optimised on its own first, because code that is already in SSA form costs little in
       // the copies that inlining makes.
       "--eliminate-local-single-block", "--eliminate-local-single-store", kSplit,
@@ -74,48 +75,48 @@ const Names& passes_until_inlined() {
       // Two passes are left out here. Removal of dead code crashes on calls that take addresses of buffers.
       // Merging of blocks moves calls into continue constructs, where functions that end an any-hit shader
       // are not inlined.
-      "--inline-entry-points-exhaustive", "--eliminate-dead-functions", "--eliminate-dead-code-aggressive"};
+      "--inline-entry-points-exhaustive", "--eliminate-dead-functions", kDropCode};
   return kPasses;
 }
 
-const Names& passes_when_inlined() {
-  static const Names kPasses = {"--private-to-local",
-                                "--eliminate-local-single-block",
-                                "--eliminate-local-single-store",
-                                "--eliminate-dead-code-aggressive",
-                                kSplit,
-                                "--convert-local-access-chains",
-                                "--eliminate-local-single-block",
-                                "--eliminate-local-single-store",
-                                "--eliminate-dead-code-aggressive",
-                                kSsaRewrite,
-                                "--eliminate-dead-code-aggressive",
-                                "--vector-dce",
-                                "--eliminate-dead-inserts",
-                                "--eliminate-dead-branches",
-                                "--cfg-cleanup",
-                                "--merge-blocks",
-                                "--eliminate-dead-code-aggressive",
-                                kDropConstants};
+const PassNames& passes_when_inlined() {
+  static const PassNames kPasses = {"--private-to-local",
+                                    "--eliminate-local-single-block",
+                                    "--eliminate-local-single-store",
+                                    kDropCode,
+                                    kSplit,
+                                    "--convert-local-access-chains",
+                                    "--eliminate-local-single-block",
+                                    "--eliminate-local-single-store",
+                                    kDropCode,
+                                    kSsaRewrite,
+                                    kDropCode,
+                                    "--vector-dce",
+                                    "--eliminate-dead-inserts",
+                                    "--eliminate-dead-branches",
+                                    "--cfg-cleanup",
+                                    "--merge-blocks",
+                                    kDropCode,
+                                    kDropConstants};
   return kPasses;
 }
 
 // These passes are those of a very large module, and of a large one without calls.
-const Names& few_passes_when_inlined() {
-  static const Names kPasses = {"--private-to-local",
-                                kSplit,
-                                "--convert-local-access-chains",
-                                kSsaRewrite,
-                                "--eliminate-dead-code-aggressive",
-                                "--vector-dce",
-                                "--eliminate-dead-branches",
-                                "--cfg-cleanup",
-                                "--merge-blocks",
-                                kDropConstants};
+const PassNames& few_passes_when_inlined() {
+  static const PassNames kPasses = {"--private-to-local",
+                                    kSplit,
+                                    "--convert-local-access-chains",
+                                    kSsaRewrite,
+                                    kDropCode,
+                                    "--vector-dce",
+                                    "--eliminate-dead-branches",
+                                    "--cfg-cleanup",
+                                    "--merge-blocks",
+                                    kDropConstants};
   return kPasses;
 }
 
-void append(Names& names, const Names& more) {
+void append_passes(PassNames& names, const PassNames& more) {
   names.insert(names.end(), more.begin(), more.end());
 }
 
@@ -126,8 +127,8 @@ PassList passes_of(const std::vector<uint32_t>& spirv, const InlinedSize& size) 
   const bool has_few = calls_nothing || size.instructions > kVeryLargeModule;
   PassList out{passes_before_all(), std::nullopt};
   // Without calls, the passes before inlining would do the same work as those after it.
-  if (!calls_nothing) append(out.names, passes_until_inlined());
-  append(out.names, has_few ? few_passes_when_inlined() : passes_when_inlined());
+  if (!calls_nothing) append_passes(out.names, passes_until_inlined());
+  append_passes(out.names, has_few ? few_passes_when_inlined() : passes_when_inlined());
   if (is_large) out.promotes_over = has_few ? 0 : kMostAccesses;
   if (largest_variable(spirv) > kLargeVariable)
     std::replace(out.names.begin(), out.names.end(), std::string(kSplit),

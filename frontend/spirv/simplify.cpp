@@ -77,11 +77,6 @@ void add_pass_times(const std::string& text, PassTimes& times) {
   }
 }
 
-std::string timed_validation(const std::vector<uint32_t>& spirv, const char* when, PassTimes* times) {
-  const PassTimer timer(times, "validation", when);
-  return validate_spirv(spirv);
-}
-
 // Runs passes over a module without extensions. It returns nothing when they fail.
 std::vector<uint32_t> optimise(const std::vector<uint32_t>& input, std::span<const std::string> passes,
                                Report* report) {
@@ -143,7 +138,10 @@ std::vector<uint32_t> valid_after_passes(const std::vector<uint32_t>& spirv, con
   std::vector<uint32_t> output = after_passes(spirv, passes, report);
   if (output.empty()) return {};
   output = with_marks_in_place(with_debug_prints(without_marks(output)));
-  const std::string after = timed_validation(output, "after", report->times);
+  const std::string after = [&] {
+    const PassTimer timer(report->times, "validation", "after");
+    return validate_made_spirv(output);
+  }();
   report->messages += after;
   return after.empty() ? output : std::vector<uint32_t>{};
 }
@@ -197,8 +195,9 @@ std::vector<uint32_t> with_lengths(std::vector<uint32_t> spirv, const std::strin
 namespace {
 
 void check_validity(const std::vector<uint32_t>& spirv, const std::string& name, PassTimes* times) {
+  const PassTimer timer(times, "validation", "before");
   const std::string before =
-      spirv.size() < kHeaderWords ? "too short to hold a header\n" : timed_validation(spirv, "before", times);
+      spirv.size() < kHeaderWords ? "too short to hold a header\n" : validate_spirv(spirv);
   if (!before.empty()) throw UserError({name, 0, 0}, "invalid SPIR-V\n" + before);
 }
 

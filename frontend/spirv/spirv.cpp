@@ -107,10 +107,10 @@ std::string second_incoming(std::span<const uint32_t> words) {
   return {};
 }
 
-enum class Names { Numbers, Friendly };
+enum class IdNames { Numbers, Friendly };
 
 // Returns what the validator says against the module, without false alarms; nothing when it says nothing.
-std::string verdict(const std::vector<uint32_t>& words, Names names) {
+std::string verdict(const std::vector<uint32_t>& words, IdNames names) {
   std::string messages;
   bool only_false_alarms = false;
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
@@ -125,7 +125,7 @@ std::string verdict(const std::vector<uint32_t>& words, Names names) {
   spvtools::ValidatorOptions options;
   options.SetScalarBlockLayout(true);
   options.SetWorkgroupScalarBlockLayout(true);
-  options.SetFriendlyNames(names == Names::Friendly);
+  options.SetFriendlyNames(names == IdNames::Friendly);
   if (tools.Validate(words.data(), words.size(), options)) return missing_components(words);
   if (messages.empty() && only_false_alarms) return {};
   return messages.empty() ? "the SPIR-V validator rejected the module without a message\n" : messages;
@@ -138,8 +138,15 @@ std::string validate_spirv(const std::vector<uint32_t>& words) {
   if (nesting_of(words) > kDeepestValidated) return missing_components(words);
   // The validator makes its table of friendly names in time that grows with the square of the ids that share
   // a name; 3,000 functions with a parameter "x" take it 1.6 s. Only messages need the table.
-  if (verdict(words, Names::Numbers).empty()) return {};
-  return verdict(words, Names::Friendly);
+  if (verdict(words, IdNames::Numbers).empty()) return {};
+  return verdict(words, IdNames::Friendly);
+}
+
+std::string validate_made_spirv(const std::vector<uint32_t>& words) {
+#ifndef GLINT_DCHECKS
+  if (selections_and_loops_of(words) > kMostValidated) return missing_components(words);
+#endif
+  return validate_spirv(words);
 }
 
 bool is_spirv_file(const std::string& path) {

@@ -12,6 +12,10 @@ namespace glint::frontend {
 // file), and modules deeper than kDeepestValidated (limits.h) are hardly looked at.
 std::string validate_spirv(const std::vector<uint32_t>& words);
 
+// Does the same for a module that glslang or the optimiser made. Only builds with GLINT_DCHECKS look at one
+// with more than kMostValidated selections and loops (limits.h).
+std::string validate_made_spirv(const std::vector<uint32_t>& words);
+
 // Throws UnsupportedError with the numbers of the capabilities that the installed SPIRV-Tools do not know and
 // so cannot validate.
 void refuse_unknown_capabilities(const std::vector<uint32_t>& words, const std::string& name);

@@ -55,6 +55,13 @@ std::string nested_macros(int levels) {
          });
 }
 
+// Returns functions f0 to f`last`, one a line from line 4 on, each of which calls the one before it.
+std::string called_functions(int last) {
+  return "\n\nfloat f0(float x) { return x * 1.5; }\n" + times(last, [](int i) {
+           return "float f" + std::to_string(i + 1) + "(float x) { return f" + std::to_string(i) + "(x); }\n";
+         });
+}
+
 std::string nested_loops(int depth) {
   return times(depth, "for (int i = 0; i < int(x); ++i) {\n") + "x *= 1.5;" + times(depth, "}");
 }
@@ -75,6 +82,8 @@ TEST_CASE("what is too large, too deep or too long is refused at its file and li
               "float f(float x) {\n" + times(500, "if (x > 2.0) {") + "\nx += 1.0;\n" + times(500, "}") +
                   "return x; }\n"),
        "1100 deep"},
+      {"calls", shader("x = f1001(x);", called_functions(1001)),
+       "t.comp:6: calls of functions lie 1002 deep in each other, and at most 1000 are possible"},
       {"terms", shader("x = " + times(400'000, "x + ") + "x;"), "t.comp:4: error: the shader has 800"},
       {"macros", shader("x = A25 x;", nested_macros(25)),
        "t.comp:30: error: 'A25' expands to 67108864 tokens"},
@@ -101,6 +110,8 @@ TEST_CASE("the largest array, the deepest nesting and long texts compile") {
   const int deepest = int(kDeepestNesting);
   CHECK(count_ops(compiled(shader(times(deepest, "if (x > 2.0) {\n") + "x *= 1.5;" + times(deepest, "}"))),
                   "mul.rn.f32") == 1);
+  CHECK(count_ops(compiled(shader("x = f999(x);", called_functions(int(kDeepestCalls) - 1))), "mul.rn.f32") ==
+        1);
   CHECK(count_ops(compiled(shader(nested_loops(int(kDeepestLoops)))), "mul.rn.f32") == 1);
   CHECK(count_ops(compiled(shader("x = x" + times(20'000, " + x") + ";")), "add.rn.f32") == 20'000);
   CHECK(count_ops(compiled(shader("x = A8 x;", nested_macros(8))), "add.rn.f32") == 256);
@@ -112,6 +123,21 @@ TEST_CASE(
   const std::string text = disassemble_spirv(glsl_text_to_spirv(deep, "t.comp", isa::Stage::Compute, {}));
   CHECK_THROWS_WITH(assemble_spirv(text, "t.spvasm"),
                     Contains("t.comp:303: ") && Contains("at most 255 are"));
+}
+
+TEST_CASE(
+    "the validator is spared modules of glslang with more than 2,500 selections, and no SPIR-V that is "
+    "read") {
+  for (const int selections : {2500, 2501}) {
+    auto words = glsl_text_to_spirv(shader(times(selections, "if (x > 1.5) x = sqrt(x);\n")), "t.comp",
+                                    isa::Stage::Compute, {});
+    CHECK(selections_and_loops_of(words) == uint32_t(selections));
+    words[3] = 1;  // No id is below this bound.
+    CHECK_THAT(validate_spirv(words), Contains("ID"));
+#ifndef GLINT_DCHECKS
+    CHECK(validate_made_spirv(words).empty() == (selections > 2500));
+#endif
+  }
 }
 
 TEST_CASE("a chain of a thousand `else if` compiles") {
