@@ -74,7 +74,7 @@ void give_back_memory() {
 #endif
 }
 
-std::string name_of(const Model& model) {
+std::string name_of_model(const Model& model) {
   return "bottom level " + model.name;
 }
 
@@ -238,7 +238,7 @@ rt::EncodedBottom SceneWorld::encode_bottom(const RenderJob& job, size_t index, 
     geometry.no_duplicate_any_hit = true;
   }
   const rt::BottomLevel level{{geometry}};
-  const std::string name = name_of(model);
+  const std::string name = name_of_model(model);
   return job.structure_cache ? job.structure_cache->encode(name, level, job.gpu.bvh, threads)
                              : rt::encode_bottom(name, level, job.gpu.bvh, threads);
 }
@@ -264,7 +264,7 @@ std::vector<rt::StructureInfo> SceneWorld::build_bottoms(const RenderJob& job) {
         return built != large.end() ? std::move(built->second) : encode_bottom(job, i, 1);
       },
       [&](size_t i, rt::EncodedBottom&& bottom) {
-        bottoms.push_back(rt::place(memory_, name_of(models[i]), std::move(bottom)));
+        bottoms.push_back(rt::place(memory_, name_of_model(models[i]), std::move(bottom)));
         structures.procedurals += models[i].is_procedural();
         structures.triangles += models[i].is_procedural() ? 0 : uploaded_[i].indices.size() / 3;
         structures.bytes += bottoms.back().bytes;

@@ -50,7 +50,7 @@ class PrefetchMarks {
   // Sectors on the way have come into the line in `slot`.
   void arrived(uint32_t entry, uint32_t slot, uint8_t sectors) {
     if (!is_active_) return;
-    in_line_[slot] |= in_entry_[entry] & sectors;
+    in_line_[slot] |= uint8_t(in_entry_[entry] & sectors);
     in_entry_[entry] &= uint8_t(~sectors);
   }
   // Sectors on the way have come, and the cache did not keep them.
