@@ -93,7 +93,7 @@ TEST_CASE("rays whose work lanes share find the hits that they find alone, with 
             params.stack.name = stack;
             params.prefetch.name = prefetch;
             params.retest = retest;
-            params.warps = 1 + ++seed % 3;
+            params.warps = uint32_t(1 + ++seed % 3);
             params.mshr_entries = seed % 2 ? 0 : 9;
             params.result_store = seed % 3 == 0;
             if (!RtUnit::why_not_together(params).empty()) continue;

@@ -55,7 +55,7 @@ struct CoreTraffic {
   std::mt19937 random;
   std::optional<Request> pending;
   Token next = 0;
-  uint64_t reads = 0, writes = 0, written_sectors = 0;
+  uint64_t reads = 0, prefetches = 0, writes = 0, written_sectors = 0;  // prefetches are among the reads
   std::set<Address> lines_read;
 
   explicit CoreTraffic(uint32_t seed) : random(seed) {}
@@ -74,7 +74,7 @@ struct CoreTraffic {
       if (pending->write)
         ++writes;
       else
-        ++reads, lines_read.insert(pending->line);
+        ++reads, lines_read.insert(pending->line), prefetches += pending->traffic == Traffic::RtPrefetch;
       pending.reset();
       ++next;
     }
@@ -116,17 +116,19 @@ Outcome simulate(uint32_t variant, Cycle window, bool step, uint32_t seed = 5) {
   rig.memory().finish(kEnd);
   rig.memory().check_drained();
 
-  uint64_t reads = 0;
+  uint64_t reads = 0, prefetches = 0;
   for (uint32_t c = 0; c < kCores; ++c) {
     const L1Stats& s = rig.l1(c).stats();
     reads += traffic[c].reads;
+    prefetches += traffic[c].prefetches;
     CHECK(s.reads.total() == traffic[c].reads);
     CHECK(s.writes.total() == traffic[c].writes);
     CHECK(s.hits.total() + s.pending_hits.total() + s.misses.total() == traffic[c].reads);
     CHECK(s.cold_misses.total() <= traffic[c].lines_read.size());
     CHECK(s.sectors_fetched.total() == rig.l1(c).sectors_requested());
   }
-  CHECK(rig.answers().size() == reads);
+  CHECK(rig.answers().size() == reads - prefetches);
+  CHECK(prefetches > 0);
   for (uint32_t p = 0; p < rig.memory().num_partitions(); ++p) {
     const Partition& partition = rig.memory().partition(p);
     const DramStats& d = partition.dram().stats();
