@@ -40,8 +40,7 @@ function(glint_library name)
     add_library(glint_${name}_policies STATIC ${policies})
     target_include_directories(glint_${name}_policies PRIVATE ${PROJECT_SOURCE_DIR})
     target_precompile_headers(glint_${name}_policies REUSE_FROM glint_base)
-    # Policies also call functions of their own library, so it is searched again behind them.
-    target_link_libraries(glint_${name}_policies PUBLIC glint_${name} ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:glint_warnings>)
+    target_link_libraries(glint_${name}_policies PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:glint_warnings>)
     # The whole archive is linked, because a static library drops objects that nothing refers to, and with them the registrations.
     set_property(GLOBAL APPEND PROPERTY GLINT_LIBRARIES glint_${name}_policies)
     set_target_properties(glint_${name}_policies PROPERTIES EXPORT_NAME ${name}_policies)

@@ -352,14 +352,6 @@ bool start_at(RayState& s, const mem::AddressSpace& memory, const Start& start) 
   return true;
 }
 
-std::optional<Start> start_above(const RayState& s, const Hit& hit, uint32_t levels) {
-  if (!s.path || s.path->depth == RayPath::kNoParent) return std::nullopt;
-  size_t depth = s.path->depth;
-  for (; levels && depth > 0 && s.path->node[depth - 1].kind != NodeKind::Instance; --levels) --depth;
-  const Fetch& node = s.path->node[depth];
-  return Start{hit.instance_leaf, node.address, node.kind};
-}
-
 void break_off(RayState& s) {
   s.broken = true;
   finish(s);

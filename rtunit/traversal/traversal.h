@@ -53,8 +53,15 @@ struct Start {
 bool start_at(RayState& state, const mem::AddressSpace& memory, const Start& start);
 
 // Returns the node `levels` above the leaf that the ray has visited last and that holds `hit`: at most the
-// root of the same bottom level. A ray that keeps no path has none.
-std::optional<Start> start_above(const RayState& state, const Hit& hit, uint32_t levels);
+// root of the same bottom level. A ray that keeps no path has none. It is defined here, because policies are
+// linked behind the other objects and can only call those that the machine needs anyway.
+inline std::optional<Start> start_above(const RayState& state, const Hit& hit, uint32_t levels) {
+  if (!state.path || state.path->depth == RayPath::kNoParent) return std::nullopt;
+  size_t depth = state.path->depth;
+  for (; levels && depth > 0 && state.path->node[depth - 1].kind != NodeKind::Instance; --levels) --depth;
+  const Fetch& node = state.path->node[depth];
+  return Start{hit.instance_leaf, node.address, node.kind};
+}
 
 // Ends a ray whose next node lies outside memory: it is Done and `broken`.
 void break_off(RayState& state);
