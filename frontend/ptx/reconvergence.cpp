@@ -16,8 +16,8 @@
 #include <set>
 #include <utility>
 
+#include "frontend/backend/flow_graph.h"
 #include "frontend/ptx/draft.h"
-#include "frontend/ptx/flow_graph.h"
 
 namespace glint::frontend::ptx {
 namespace {

@@ -1,61 +1,26 @@
-// Builds SSA form as described by M. Braun et al., "Simple and Efficient Construction of Static Single
-// Assignment Form" (2013): a variable is looked up along the predecessors, and phis that turn out to have one
-// value only are dropped at the end.
+// Builds SSA form from the places where phis may be needed (phi_places.h): a phi is made when a load or
+// another phi asks for its value, and phis that turn out to have one value only are dropped at the end.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/promoted_variables.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <span>
-#include <spirv-tools/libspirv.h>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "frontend/spirv/parsed_instructions.h"
+#include "frontend/spirv/phi_places.h"
+
 namespace glint::frontend {
 namespace {
 
 using enum spv::Op;
-
-// Describes an instruction of the module. Offsets count words from its first one.
-struct ParsedInst {
-  spv::Op op = OpNop;
-  size_t at = 0;  // index of its first word in the module
-  uint32_t num_words = 0, type = 0, result = 0;
-  std::vector<uint16_t> ids;  // offsets of the operands that are ids, without its type and result
-};
-
-struct ParsedModule {
-  std::vector<ParsedInst> insts;
-  size_t next = kHeaderWords;
-};
-
-spv_result_t take_instruction(void* module, const spv_parsed_instruction_t* parsed) {
-  auto& out = *static_cast<ParsedModule*>(module);
-  ParsedInst inst{spv::Op(parsed->opcode), out.next,          parsed->num_words,
-                  parsed->type_id,         parsed->result_id, {}};
-  for (uint16_t i = 0; i < parsed->num_operands; ++i) {
-    const spv_parsed_operand_t& operand = parsed->operands[i];
-    const bool is_id = operand.type == SPV_OPERAND_TYPE_ID || operand.type == SPV_OPERAND_TYPE_SCOPE_ID ||
-                       operand.type == SPV_OPERAND_TYPE_MEMORY_SEMANTICS_ID;
-    if (is_id) inst.ids.push_back(operand.offset);
-  }
-  out.next += parsed->num_words;
-  out.insts.push_back(std::move(inst));
-  return SPV_SUCCESS;
-}
-
-// Returns the instructions of a module, or none when it cannot be parsed.
-std::vector<ParsedInst> parsed(const Words& words) {
-  ParsedModule module;
-  const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
-  const spv_result_t result =
-      spvBinaryParse(context, &module, words.data(), words.size(), nullptr, take_instruction, nullptr);
-  spvContextDestroy(context);
-  return result == SPV_SUCCESS ? std::move(module.insts) : std::vector<ParsedInst>{};
-}
 
 bool is_note(spv::Op op) {
   return op == OpName || op == OpDecorate || op == OpDecorateId || op == OpDecorateString;
@@ -66,6 +31,12 @@ struct FlowBlock {
   size_t first = 0, last = 0;                // indices of instructions: its label, and behind its end
   std::vector<uint32_t> next, before;        // each block once; `before` has reachable blocks only
   std::vector<uint32_t> unreachable_before;  // labels
+};
+
+struct PromotedVariable {
+  uint32_t type = 0, first = 0;  // of its value, and its value at first (0: undefined)
+  AccessedBlocks blocks;
+  Definitions definitions;
 };
 
 struct NewPhi {
@@ -102,10 +73,11 @@ class Promotion {
   Promotion(const Words& words, std::span<const ParsedInst> insts, Changes& changes)
       : words_(words), insts_(insts), changes_(changes) {}
 
-  // Takes variables with their types of value and their values at first (0: undefined).
-  void run(std::map<uint32_t, std::pair<uint32_t, uint32_t>> variables) {
+  void run(std::map<uint32_t, PromotedVariable> variables) {
     variables_ = std::move(variables);
     find_blocks();
+    for (const uint32_t block : order_) note_accesses(block);
+    for (auto& [id, variable] : variables_) variable.definitions = places_->definitions(variable.blocks);
     for (const uint32_t block : order_) visit(block, true);
     for (uint32_t block = 0; block < blocks_.size(); ++block)
       if (!is_reachable_[block]) visit(block, false);
@@ -145,6 +117,9 @@ class Promotion {
           blocks_[to].before.push_back(b);
         else
           blocks_[to].unreachable_before.push_back(blocks_[b].label);
+    Edges next;
+    for (const FlowBlock& block : blocks_) next.push_back(block.next);
+    places_.emplace(next);
   }
 
   // Sorts the reachable blocks so that each comes behind one of those before it.
@@ -170,51 +145,77 @@ class Promotion {
 
   static uint64_t key_of(uint32_t block, uint32_t variable) { return uint64_t(block) << 32 | variable; }
 
-  void visit(uint32_t block, bool is_reachable) {
+  // Returns the variable that an instruction loads or stores, or null when it is not to be promoted.
+  PromotedVariable* accessed(const ParsedInst& inst) {
+    if (inst.op != OpLoad && inst.op != OpStore) return nullptr;
+    const auto known = variables_.find(word(inst, inst.ids[0]));
+    return known == variables_.end() ? nullptr : &known->second;
+  }
+
+  void note_accesses(uint32_t block) {
     for (size_t i = blocks_[block].first; i < blocks_[block].last; ++i) {
       const ParsedInst& inst = insts_[i];
-      if (inst.op != OpLoad && inst.op != OpStore) continue;
-      const uint32_t variable = word(inst, inst.ids[0]);
-      const auto known = variables_.find(variable);
-      if (known == variables_.end()) continue;
-      if (inst.op == OpStore)
-        values_[key_of(block, variable)] = word(inst, inst.ids[1]);
-      else
-        changes_.value_of[inst.result] =
-            is_reachable ? value_in(block, variable) : changes_.undefined_of(known->second.first);
+      PromotedVariable* const variable = accessed(inst);
+      if (!variable) continue;
+      auto& [stores, open_loads] = variable->blocks;
+      const bool is_stored = !stores.empty() && stores.back() == block;
+      if (inst.op == OpStore) {
+        last_store_[key_of(block, word(inst, inst.ids[0]))] = word(inst, inst.ids[1]);
+        if (!is_stored) stores.push_back(block);
+      } else if (!is_stored && (open_loads.empty() || open_loads.back() != block)) {
+        open_loads.push_back(block);
+      }
     }
   }
 
-  // Returns the value that a variable has at the end of what was visited of a block. It makes a phi where
-  // several blocks come together.
-  uint32_t value_in(uint32_t block, uint32_t variable) {
-    std::vector<uint64_t> passed;
-    uint32_t value = 0;
-    for (uint32_t b = block;; b = blocks_[b].before[0]) {
-      passed.push_back(key_of(b, variable));
-      if (const auto known = values_.find(passed.back()); known != values_.end()) {
-        value = known->second;
-        break;
-      }
-      if (blocks_[b].before.empty()) {
-        const auto [type, first] = variables_.at(variable);
-        value = first != 0 ? first : changes_.undefined_of(type);
-        break;
-      }
-      if (blocks_[b].before.size() > 1) {
-        value = changes_.bound++;
-        phi_of_[value] = phis_.size();
-        phis_.push_back({value, b, variable, {}, {}});
-        break;
+  void visit(uint32_t block, bool is_reachable) {
+    std::unordered_map<uint32_t, uint32_t> values;  // by variable
+    for (size_t i = blocks_[block].first; i < blocks_[block].last; ++i) {
+      const ParsedInst& inst = insts_[i];
+      const PromotedVariable* const variable = accessed(inst);
+      if (!variable) continue;
+      const uint32_t id = word(inst, inst.ids[0]);
+      if (inst.op == OpStore) {
+        values[id] = word(inst, inst.ids[1]);
+      } else if (!is_reachable) {
+        changes_.value_of[inst.result] = changes_.undefined_of(variable->type);
+      } else {
+        const auto [value, is_new] = values.try_emplace(id, 0);
+        if (is_new) value->second = value_at_begin(block, id);
+        changes_.value_of[inst.result] = value->second;
       }
     }
-    for (const uint64_t key : passed) values_[key] = value;
-    return value;
+  }
+
+  uint32_t value_at_begin(uint32_t block, uint32_t variable) {
+    if (variables_.at(variable).definitions.meet_at(block)) return phi_at(block, variable);
+    return block == 0 ? value_at_first(variable) : value_at_end(places_->dominator(block), variable);
+  }
+
+  uint32_t value_at_end(uint32_t block, uint32_t variable) {
+    const uint32_t definition = variables_.at(variable).definitions.at_end_of(block);
+    if (definition == kNoBlock) return value_at_first(variable);
+    const auto stored = last_store_.find(key_of(definition, variable));
+    return stored != last_store_.end() ? stored->second : phi_at(definition, variable);
+  }
+
+  uint32_t value_at_first(uint32_t variable) {
+    const PromotedVariable& about = variables_.at(variable);
+    return about.first != 0 ? about.first : changes_.undefined_of(about.type);
+  }
+
+  uint32_t phi_at(uint32_t block, uint32_t variable) {
+    const auto [at, is_new] = phi_at_.try_emplace(key_of(block, variable), changes_.bound);
+    if (is_new) {
+      phi_of_[changes_.bound] = phis_.size();
+      phis_.push_back({changes_.bound++, block, variable, {}, {}});
+    }
+    return at->second;
   }
 
   void complete(size_t phi) {
     for (const uint32_t before : blocks_[phis_[phi].block].before) {
-      const uint32_t value = value_in(before, phis_[phi].variable);
+      const uint32_t value = value_at_end(before, phis_[phi].variable);
       phis_[phi].values.push_back(value);
     }
   }
@@ -247,7 +248,8 @@ class Promotion {
       // Its users now have another value, and may in their turn have one only.
       if (const auto other = phi_of_.find(only); other != phi_of_.end()) {
         std::vector<size_t>& users = phis_[other->second].users;
-        users.insert(users.end(), phi.users.begin(), phi.users.end());
+        std::copy_if(phi.users.begin(), phi.users.end(), std::back_inserter(users),
+                     [&](size_t user) { return !changes_.value_of.count(phis_[user].id); });
       }
       work.insert(work.end(), phi.users.begin(), phi.users.end());
     }
@@ -256,7 +258,7 @@ class Promotion {
   void write(const NewPhi& phi) {
     if (changes_.value_of.count(phi.id)) return;
     const FlowBlock& block = blocks_[phi.block];
-    const uint32_t type = variables_.at(phi.variable).first;
+    const uint32_t type = variables_.at(phi.variable).type;
     Words operands;
     for (size_t i = 0; i < phi.values.size(); ++i)
       operands.insert(operands.end(), {changes_.value(phi.values[i]), blocks_[block.before[i]].label});
@@ -268,11 +270,13 @@ class Promotion {
   const Words& words_;
   const std::span<const ParsedInst> insts_;
   Changes& changes_;
-  std::map<uint32_t, std::pair<uint32_t, uint32_t>> variables_;
+  std::map<uint32_t, PromotedVariable> variables_;
   std::vector<FlowBlock> blocks_;
   std::vector<bool> is_reachable_;
-  std::vector<uint32_t> order_;                    // of reachable blocks
-  std::unordered_map<uint64_t, uint32_t> values_;  // by block and variable
+  std::vector<uint32_t> order_;  // of reachable blocks
+  std::optional<PhiPlaces> places_;
+  std::unordered_map<uint64_t, uint32_t> last_store_;  // by block and variable: value
+  std::unordered_map<uint64_t, uint32_t> phi_at_;      // by block and variable: result
   std::vector<NewPhi> phis_;
   std::unordered_map<uint32_t, size_t> phi_of_;  // by result
 };
@@ -280,7 +284,8 @@ class Promotion {
 // Chooses functions and their variables, and writes the module anew.
 class Promoter {
  public:
-  Promoter(const Words& words, uint32_t most) : words_(words), most_(most), insts_(parsed(words)) {
+  Promoter(const Words& words, uint32_t most)
+      : words_(words), most_(most), insts_(parsed_instructions(words)) {
     changes_.bound = words[kBoundWord];
   }
 
@@ -314,12 +319,13 @@ class Promoter {
   }
 
   void promote(std::span<const ParsedInst> function) {
-    std::map<uint32_t, std::pair<uint32_t, uint32_t>> variables;
+    std::map<uint32_t, PromotedVariable> variables;
     std::unordered_map<uint32_t, uint32_t> accesses;
     uint32_t most = 0;
     for (const ParsedInst& inst : function)
       if (inst.op == OpVariable && plain_types_.count(pointees_[inst.type]))
-        variables[inst.result] = {pointees_[inst.type], inst.ids.empty() ? 0 : word(inst, inst.ids[0])};
+        variables[inst.result] = {
+            pointees_[inst.type], inst.ids.empty() ? 0 : word(inst, inst.ids[0]), {}, {}};
     for (const ParsedInst& inst : function) {
       const bool is_access = inst.op == OpLoad || inst.op == OpStore;
       // The mask of an access stands behind its ids. A volatile access stays.

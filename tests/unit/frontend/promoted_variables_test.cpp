@@ -157,6 +157,60 @@ OpFunctionEnd
   CHECK(count_ops(promoted, spv::Op::OpDecorate) == count_ops(words, spv::Op::OpDecorate) - 2);
 }
 
+TEST_CASE("phis are tried only where stores of a variable meet, however many selections follow") {
+  constexpr uint32_t kVariables = 300;
+  const auto all = [](const std::function<std::string(std::string)>& text) {
+    return repeated(kVariables, text);
+  };
+  const std::string code =
+      "#version 460\nlayout(local_size_x = 1) in;\nlayout(binding = 0) buffer Out { uint v[]; };\nvoid "
+      "main() {\n"
+      "uint x = v[0];\n" +
+      all([](const std::string& k) { return "uint a" + k + " = " + k + "u;\n"; }) +
+      all([](const std::string& k) { return "if (x > " + k + "u) a" + k + " = v[" + k + "];\n"; }) +
+      all([](const std::string& k) { return "v[" + k + "] = a" + k + ";\n"; }) + "}\n";
+  const Words words = glsl_text_to_spirv(code, "t.comp", isa::Stage::Compute, {});
+  const Words promoted = with_promoted_variables(words, 0);
+  CHECK(validate_spirv(promoted) == "");
+  CHECK(count_ops(promoted, spv::Op::OpPhi) == kVariables);
+  // Each phi that is tried takes an id.
+  CHECK(promoted[kBoundWord] == words[kBoundWord] + kVariables);
+}
+
+TEST_CASE("variables stored in cases that fall through, and read behind loops, have the values they say") {
+  constexpr uint32_t kVariables = 300;
+  const auto all = [](const std::function<std::string(std::string)>& text) {
+    return repeated(kVariables, text);
+  };
+  const auto got = lab::run(
+      kWords,
+      all([](const std::string& k) { return "uint a" + k + " = x + " + k + "u;\n"; }) +
+          "for (uint i = 0u; i < 3u; ++i) {\nif ((x & 3u) == i) continue;\nswitch (int(x) + 7 * int(i)) {\n" +
+          all([](const std::string& k) {
+            return "case " + k + ": { uint t = a" + k + "; if ((t & 1u) != 0u) t += i; a" + k +
+                   " = t * 3u; " + (k.back() == '5' ? "break; }\n" : "}\n");
+          }) +
+          "}\nif (a9 > 0xf0000000u) break;\n}\n" +
+          all([](const std::string& k) { return "y = y * 31u + a" + k + ";\n"; }));
+  for (size_t lane = 0; lane < kWords.size(); ++lane) {
+    const uint32_t x = kWords[lane];
+    std::vector<uint32_t> a;
+    for (uint32_t k = 0; k < kVariables; ++k) a.push_back(x + k);
+    for (uint32_t i = 0; i < 3; ++i) {
+      if ((x & 3) == i) continue;
+      for (uint32_t k = x + 7 * i; k < kVariables; ++k) {
+        a[k] = (a[k] + (a[k] & 1 ? i : 0)) * 3;
+        if (k % 10 == 5) break;
+      }
+      if (a[9] > 0xf000'0000) break;
+    }
+    uint32_t y = 0;
+    for (const uint32_t each : a) y = y * 31 + each;
+    CAPTURE(x);
+    CHECK(got[lane] == y);
+  }
+}
+
 TEST_CASE("matrices, structs and arrays that are stored as a whole are promoted in a very large shader") {
   const std::string globals =
       "struct Pair { uint a; uvec2 b; };\n"

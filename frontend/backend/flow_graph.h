@@ -6,7 +6,7 @@
 
 #include "frontend/virtual_program.h"
 
-namespace glint::frontend::ptx {
+namespace glint::frontend {
 
 using Edges = std::vector<std::vector<BlockId>>;  // by block: the blocks to which its edges lead
 using Blocks = std::set<BlockId>;
@@ -29,4 +29,4 @@ struct Loop {
 // is not a natural loop.
 std::vector<Loop> natural_loops(const Edges& next, BlockId entry);
 
-}  // namespace glint::frontend::ptx
+}  // namespace glint::frontend

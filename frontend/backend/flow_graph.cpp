@@ -1,12 +1,12 @@
 // Computes dominators by iteration over the graph, and finds loops by their back edges.
 // SPDX-License-Identifier: Apache-2.0
-#include "frontend/ptx/flow_graph.h"
+#include "frontend/backend/flow_graph.h"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-namespace glint::frontend::ptx {
+namespace glint::frontend {
 namespace {
 
 std::vector<BlockId> postorder_of(const Edges& next, BlockId root) {
@@ -94,4 +94,4 @@ std::vector<Loop> natural_loops(const Edges& next, BlockId entry) {
   return loops;
 }
 
-}  // namespace glint::frontend::ptx
+}  // namespace glint::frontend
