@@ -199,7 +199,10 @@ std::string reference_index(std::span<const PresetTimes> presets) {
       "has.\n"
       "- The columns of the presets give latency/interval of the op's unit in cycles: the cycles to a "
       "dependent instruction, and\n"
-      "  the cycles to the next instruction on the pipe (`[core.units.<unit>]` of the configuration).\n"
+      "  the cycles to the next instruction on the pipe (`[core.units.<unit>]` of the configuration). "
+      "Presets "
+      "with a `base` are\n"
+      "  left out.\n"
       "- `docs/instructions/<preset>.csv` lists all ops of a preset.\n"
       "\n| family | ops | |\n|---|---|---|\n";
   for (const Family& family : families())

@@ -8,6 +8,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tomllib
 
 import frame_table
 import policy_table
@@ -19,7 +20,7 @@ GENERATED = {
     "docs/config.md": (
         "Configuration keys",
         "This page lists every key of a configuration with its value in the preset `mobile`. `glint describe KEY` prints the same text.\n"
-        "The presets are in `configs/`, and `--set KEY=VALUE` overrides one key. A policy's own keys are in a table with the policy's name.",
+        "The presets are in `configs/`, and `--set KEY=VALUE` overrides one key. A file with `base = \"NAME\"` stands on another preset or file. A policy's own keys are in a table with the policy's name.",
         ["describe", "--markdown", "--config", "mobile"]),
     "docs/isa.md": (None, None, ["isa", "--index"]),  # the command writes the title
     "docs/metrics.md": (
@@ -67,6 +68,8 @@ def generated(glint):
     for family in run(glint, ["isa", "--pages"]).split():
         files[f"docs/isa/{family}.md"] = (None, None, ["isa", "--page", family])
     for config in sorted((ROOT / "configs").glob("*.toml")):
+        if "base" in tomllib.loads(config.read_text()):
+            continue  # its ops take the times of its base's, but for the few keys that its file has
         files[f"docs/instructions/{config.stem}.csv"] = (None, None, ["isa", "--table", config.stem])
     yield "python/glint/metrics.csv", metrics_csv(glint)
     yield policy_table.PATH, policy_table.table(glint)

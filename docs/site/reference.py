@@ -4,6 +4,7 @@
 import pathlib
 import re
 import subprocess
+import tomllib
 from typing import Any
 
 import help_text
@@ -73,13 +74,20 @@ def policies(glint: str) -> str:
 
 def presets(glint: str, root: pathlib.Path) -> str:
     """Returns the presets side by side, with every key in which two of them differ."""
-    names = [line.split()[0] for line in _run(glint, "list", "configs").splitlines()]
-    values = {name: _values(_run(glint, "describe", "--markdown", "--config", name)) for name in names}
+    listed = [line.split(maxsplit=1) for line in _run(glint, "list", "configs").splitlines()]
+    bases = {name: tomllib.loads((root / f"configs/{name}.toml").read_text()).get("base") for name, _ in listed}
+    names = [name for name, base in bases.items() if not base]
+    values = {name: _values(_run(glint, "describe", "--markdown", "--config", name)) for name in bases}
     differ = [key for key in values[names[0]] if len({values[name].get(key) for name in names}) > 1]
     text = [f"# Presets\n\nThe presets differ in {len(differ)} of {len(values[names[0]])} keys. The source of each number stands in the preset's file in `configs/`.\n", "| preset | what it is |\n|---|---|"]
-    text += [f"| `{line.split()[0]}` | {line.split(maxsplit=1)[1]} |" for line in _run(glint, "list", "configs").splitlines()]
+    text += [f"| `{name}` | {doc} |" for name, doc in listed]
     text.append(f"\n| key | {' | '.join(names)} |\n|---|{'---|' * len(names)}")
     text += [f"| `{key}` | {' | '.join(values[name].get(key, '').replace('_', '_<wbr>') for name in names)} |" for key in differ]  # so that all columns fit
+    text += ["\n## Presets with a base\n\nThese presets differ from their bases in the following keys.\n", "| preset | base | keys |\n|---|---|---|"]
+    for name, base in bases.items():
+        if base:
+            changed = [f"`{key}` {value}" for key, value in values[name].items() if value != values[base].get(key)]
+            text.append(f"| `{name}` | `{base}` | {', '.join(changed) or 'none; the file states those of the paper again'} |")
     return "\n".join(text) + "\n"
 
 

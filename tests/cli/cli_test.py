@@ -154,6 +154,40 @@ class Configuration(GlintTest):
             self.assertRegex(done.stdout, r"core\.warps = (16|32|64)\n")
             self.assertIn("range  1 to", done.stdout)
 
+    def test_a_file_stands_on_its_base_and_wins_over_it(self):
+        value = lambda key, config: self.glint("describe", key, "--config", config).stdout.split("\n")[0].split(" = ")[1]
+        self.write("low.toml", 'base = "vulkan-sim-desktop"\n[rt]\nwarps = 7\nrequests_per_cycle = 2\n')
+        self.write("sub/high.toml", 'base = "../low.toml"\n[rt]\nwarps = 9\n')
+        self.assertEqual([value(key, "sub/high.toml") for key in ("cores", "rt.warps", "rt.requests_per_cycle")], ["30", "9", "2"])
+        self.write("mobile", "this is no TOML")  # the name of a preset wins over a file
+        self.write("named.toml", 'base = "mobile"\n')
+        self.assertEqual(self.glint("describe", "--config", "named.toml").stdout, self.glint("describe", "--config", "mobile").stdout)
+
+    def test_a_wrong_base_is_refused_at_its_line(self):
+        self.write("a.toml", 'cores = 2\nbase = "b.toml"\n')
+        self.write("b.toml", '# this file\n\nbase = "a.toml"\n')
+        self.expect(2, ["b.toml:3:1", "the bases go in a circle", "a.toml -> b.toml -> a.toml"], "describe", "--config", "a.toml")
+        self.write("self.toml", 'base = "self.toml"\n')
+        self.expect(2, ["self.toml:1:1", "in a circle"], "describe", "--config", "self.toml")
+        self.write("c.toml", 'base = "ttp62"\n')
+        self.expect(2, ["c.toml:1:1", "the base 'ttp62'", "did you mean 'ttp26'?"], "run", "WKND", "--config", "c.toml")
+        self.expect(2, ["d.toml:1:1", "'base' is an integer"], "describe", "--config", self.write("d.toml", "base = 3\n"))
+        self.expect(2, ["e.toml:1:1", "'base' is empty"], "describe", "--config", self.write("e.toml", 'base = ""\n'))
+        self.write("bad.toml", "[core]\nwraps = 8\n")
+        self.expect(2, ["bad.toml:2:1", "core.wraps"], "describe", "--config", self.write("f.toml", 'base = "bad.toml"\n'))
+        self.expect(2, ["--set base=mobile", "a base stands in a file"], "describe", "--set", "base=mobile")
+
+    def test_a_preset_of_a_paper_has_the_numbers_of_the_paper(self):
+        said = lambda config: dict(line.split(" = ") for line in self.glint("describe", "--config", config).stdout.splitlines() if " = " in line)
+        papers = {"ttp26": ("8", "32768", "4", 512), "coop25": ("30", "65536", "4", 3072), "pred21": ("2", "65536", "16", 256),
+                  "treelet23": ("8", "65536", "16", 512), "vtq25": ("16", "16384", "1", 128)}
+        for name, (cores, l1, warps, l2) in papers.items():
+            keys = said(name)
+            self.assertEqual((keys["cores"], keys["memory.l1.size"], keys["rt.warps"]), (cores, l1, warps), name)
+            self.assertEqual(int(keys["memory.dram.channels"]) * int(keys["memory.l2.slices"]) * int(keys["memory.l2.slice_size"]), l2 << 10, name)
+        for name, base in (("ttp26", "vulkan-sim-mobile"), ("coop25", "vulkan-sim-desktop")):
+            self.assertEqual(said(name), said(base))
+
     def test_an_unknown_key_to_describe_is_refused_with_the_nearest(self):
         self.expect(2, ["did you mean 'core.warps'?"], "describe", "core.warp")
 

@@ -101,7 +101,7 @@ class Site(unittest.TestCase):
         script = "addEventListener('load',()=>{document.body.dataset.wide=JSON.stringify([...document.querySelectorAll('.table-wrapper')].map((one)=>[one.scrollWidth,one.clientWidth]))})"
         text = self.opened(self.probe("reference/presets.html", script), "--window-size=1300,1000")
         widths = re.findall(r"\[(\d+),(\d+)\]", re.search(r'data-wide="([^"]+)"', text)[1])
-        self.assertEqual(len(widths), 2)
+        self.assertEqual(len(widths), 3)
         for needed, given in widths:
             self.assertLessEqual(int(needed), int(given))
 

@@ -26,16 +26,17 @@ isa::PresetTimes times_of(const Resources& resources, const std::string& preset)
   return out;
 }
 
+// Presets with a base are left out, because they hardly change times of ops.
 std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
   std::vector<isa::PresetTimes> out;
-  for (const std::string& name : resources.config_names()) out.push_back(times_of(resources, name));
+  for (const std::string& name : names_of_whole_presets(resources)) out.push_back(times_of(resources, name));
   return out;
 }
 
 // Returns the times of the presets that load. It says on stderr why a preset does not load.
 std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
   std::vector<isa::PresetTimes> out;
-  for (const std::string& name : resources.config_names()) {
+  for (const std::string& name : names_of_whole_presets(resources)) {
     try {
       out.push_back(times_of(resources, name));
     } catch (const Error& error) {

@@ -10,13 +10,17 @@
 
 namespace glint::app {
 
-// Reads the preset or file first, then applies the settings in order. Throws UserError that lists everything
-// that is wrong. Oddities of the resulting machine are warned of on stderr.
+// Reads the preset or file first, on top of the one that its key `base` names, then applies the settings in
+// order. Throws UserError that lists everything that is wrong. Oddities of the resulting machine are warned
+// of on stderr.
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings);
 
 // Reads a preset without any messages, to list it or to compare with it.
 pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path);
+
+// Returns the names of the presets that stand without a base, sorted.
+std::vector<std::string> names_of_whole_presets(const Resources& resources);
 
 // Returns a hash of all keys and their values, which names a configuration in run.json.
 uint64_t config_hash(const pipeline::GpuParams& params);
