@@ -28,8 +28,9 @@ uint64_t primitives_of(const rt::BottomLevel& input) {
 
 // Returns a key: sizes and flags in words, and contents in two hashes of 64 bits with different starts.
 std::string key_of(const rt::BottomLevel& input, const rt::BuildOptions& options) {
-  std::string key = fmt::format("{} {}", options.format.name, options.pair_triangles);
-  for (const ParamInfo& p : options.format.params) key += fmt::format(" {}={}", p.key, p.value);
+  std::string key = fmt::format("{} {} {}", options.format.name, options.layout.name, options.pair_triangles);
+  for (const auto* params : {&options.format.params, &options.layout.params})
+    for (const ParamInfo& p : *params) key += fmt::format(" {}={}", p.key, p.value);
   uint64_t first = content_hash("first"), second = content_hash("second");
   for (const rt::Geometry& g : input.geometries) {
     key += fmt::format(" [{} {} {} {} {}{}]", g.positions.size(), g.stride, g.indices.size(), g.aabbs.size(),

@@ -24,8 +24,11 @@ class Bvh2Format final : public NodeFormat {
   FormatId id() const override { return FormatId::Bvh2; }
   uint32_t width() const override { return Bvh2::kWidth; }
   uint32_t node_bytes() const override { return Bvh2::kNodeBytes; }
-  mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const override {
-    return Bvh2::encode(tree, threads);
+  Placement place(const BuildTree& tree, const NodeOrder& order) const override {
+    return mixed_placement(tree, order, Bvh2::kNodeBytes);
+  }
+  mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads) const override {
+    return Bvh2::encode(tree, placement, threads);
   }
   uint32_t decode(const std::byte* node, std::span<DecodedChild> out) const override {
     return Bvh2::decode(node, out);

@@ -26,10 +26,12 @@ class Bvh6Format final : public NodeFormat {
   uint32_t width() const override { return Bvh6::kWidth; }
   uint32_t node_bytes() const override { return Bvh6::kNodeBytes; }
 
-  mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const override {
-    const Layout layout = mixed_layout(tree, Bvh6::kNodeBytes);
-    return Bvh6::encode(tree, layout, threads, [&](Bvh6::Node& node, std::span<const uint32_t> children) {
-      if (!children.empty()) node.first_block = layout.block[children[0]];
+  Placement place(const BuildTree& tree, const NodeOrder& order) const override {
+    return mixed_placement(tree, order, Bvh6::kNodeBytes);
+  }
+  mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads) const override {
+    return Bvh6::encode(tree, placement, threads, [&](Bvh6::Node& node, std::span<const uint32_t> children) {
+      if (!children.empty()) node.first_block = placement.block[children[0]];
     });
   }
   uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override {

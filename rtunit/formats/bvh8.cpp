@@ -27,12 +27,14 @@ class Bvh8Format final : public NodeFormat {
   uint32_t width() const override { return Bvh8::kWidth; }
   uint32_t node_bytes() const override { return Bvh8::kNodeBytes; }
 
-  mem::HostBlock encode(const BuildTree& tree, uint32_t threads) const override {
-    const Layout layout = split_layout(tree, Bvh8::kNodeBytes);
-    return Bvh8::encode(tree, layout, threads, [&](Bvh8::Node& node, std::span<const uint32_t> children) {
+  Placement place(const BuildTree& tree, const NodeOrder& order) const override {
+    return split_placement(tree, order, Bvh8::kNodeBytes);
+  }
+  mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads) const override {
+    return Bvh8::encode(tree, placement, threads, [&](Bvh8::Node& node, std::span<const uint32_t> children) {
       for (const uint32_t index : children) {
         uint32_t& first = tree.nodes[index].kind == NodeKind::Internal ? node.first_node : node.first_leaf;
-        if (first == 0) first = layout.block[index];
+        if (first == 0) first = placement.block[index];
       }
     });
   }

@@ -11,7 +11,7 @@
 
 #include "rtunit/intersection/box_test.h"
 #include "rtunit/intersection/ray_space.h"
-#include "rtunit/structure/layout.h"
+#include "rtunit/structure/placement.h"
 
 namespace glint::rt {
 
@@ -60,14 +60,13 @@ struct FloatBoxes {
     return mask_of(t_near <= t_far) & ((1u << count) - 1);
   }
 
-  static mem::HostBlock encode(const BuildTree& tree, uint32_t threads) {
-    const Layout layout = mixed_layout(tree, kNodeBytes);
-    return encoded(tree, layout, threads, [&](const BuildTree::Node& from) {
+  static mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads) {
+    return encoded(tree, placement, threads, [&](const BuildTree::Node& from) {
       Node node;
       int i = 0;
       for (uint32_t index : children_of(tree, from)) {
         const BuildTree::Node& child = tree.nodes[index];
-        node.child[i] = node_ref(layout.block[index], child.kind);
+        node.child[i] = node_ref(placement.block[index], child.kind);
         for (size_t a = 0; a < 3; ++a)
           node.low[a][i] = child.bounds.low[a], node.high[a][i] = child.bounds.high[a];
         ++i;

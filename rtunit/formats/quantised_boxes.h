@@ -11,7 +11,7 @@
 #include "rtunit/formats/quantise.h"
 #include "rtunit/intersection/box_test.h"
 #include "rtunit/intersection/ray_space.h"
-#include "rtunit/structure/layout.h"
+#include "rtunit/structure/placement.h"
 
 namespace glint::rt {
 
@@ -88,8 +88,9 @@ struct QuantisedBoxes {
 
   // Returns the bytes of the whole structure. It calls link(node, children) to set a node's references.
   template <class Link>
-  static mem::HostBlock encode(const BuildTree& tree, const Layout& layout, uint32_t threads, Link link) {
-    return encoded(tree, layout, threads, [&](const BuildTree::Node& from) {
+  static mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads,
+                               Link link) {
+    return encoded(tree, placement, threads, [&](const BuildTree::Node& from) {
       typename Format::Node node = boxes_of(tree, from);
       link(node, children_of(tree, from));
       return node;

@@ -13,8 +13,8 @@
 #include "base/diagnostics.h"
 #include "base/registry.h"
 #include "rtunit/structure/build_tree.h"
-#include "rtunit/structure/layout.h"
 #include "rtunit/structure/leaves.h"
+#include "rtunit/structure/treelet_table.h"
 #include "rtunit/traversal/ray_stack.h"
 
 namespace glint::rt {
@@ -53,6 +53,15 @@ void check_size(const std::string& name, uint64_t bytes) {
     throw UserError(fmt::format("'{}': {} bytes; a structure has at most {}", name, bytes, kMostBytes));
 }
 
+// A virtual address names its structure by its upper 32 bits (rtunit/treelets.h).
+void check_size_with_treelets(const std::string& name, uint64_t bytes) {
+  if (bytes >> mem::AddressSpace::kShift)
+    throw UserError(
+        fmt::format("'{}': {} bytes with its treelets; such a structure has at most 4 GiB, so choose "
+                    "bvh.layout = \"depth_first\"",
+                    name, bytes));
+}
+
 EncodedBottom encode(const std::string& name, uint8_t level, Leaves leaves, const BuildOptions& options,
                      uint32_t threads) {
   check_size(name, leaves.bytes.size());
@@ -70,11 +79,21 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves leaves, cons
   info.primitives = leaves.primitives;
   info.contents = leaves.contents;
   tree.leaf_bytes = std::move(leaves.bytes);
-  mem::HostBlock bytes = format->encode(tree, threads);
+  const NodeOrder order = options.layout.make({})->order(tree, format->node_bytes());
+  Placement placement = format->place(tree, order);
+  check_size(name, placement.bytes);
+  StructureHeader header;
+  const TreeletTable treelets = describe_treelets(order, format->node_bytes(), placement.bytes);
+  if (!order.first.empty()) {
+    header.treelets = uint32_t(placement.bytes / kBlockBytes);
+    placement.bytes += (treelets.bytes() + kBlockBytes - 1) / kBlockBytes * kBlockBytes;
+    check_size_with_treelets(name, placement.bytes);
+  }
+  mem::HostBlock bytes = format->encode(tree, placement, threads);
+  if (header.treelets)
+    write_treelets(treelets, tree, order, placement, bytes.data() + size_t{header.treelets} * kBlockBytes);
   info.bytes = bytes.size();
   info.format = format->id();
-  check_size(name, info.bytes);
-  StructureHeader header;
   header.format = uint8_t(format->id());
   header.level = level;
   header.contents = info.contents;

@@ -45,12 +45,15 @@ struct Instance {
 struct BuildOptions {
   PolicyChoice<NodeFormat> format{"bvh6"};  // Vulkan-Sim 2.0
   bool pair_triangles = true;
+  PolicyChoice<TreeLayout> layout{"depth_first"};
   static ParamList params() {
     return {policy(&BuildOptions::format, "format",
                    "Selects how internal nodes are written, and how many children they have."),
             flag(&BuildOptions::pair_triangles, "pair_triangles",
                  "True: two neighbouring triangles of a geometry share a leaf where that adds no "
-                 "surface area. False: each triangle has a leaf of its own.")};
+                 "surface area. False: each triangle has a leaf of its own."),
+            policy(&BuildOptions::layout, "layout",
+                   "Selects the order of nodes in memory, and which of them form treelets.")};
   }
 };
 

@@ -24,11 +24,6 @@ Bounds bounds_of(const Triangle& triangle) {
   for (const Vec3& p : triangle) extend(out, {p, p});
   return out;
 }
-double half_area(const Bounds& b) {
-  const double x = double(b.high[0]) - b.low[0], y = double(b.high[1]) - b.low[1],
-               z = double(b.high[2]) - b.low[2];
-  return x * y + y * z + z * x;
-}
 
 bool has_area(const Triangle& t) {
   double a[3], b[3];

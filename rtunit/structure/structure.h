@@ -69,7 +69,8 @@ struct StructureHeader {
   uint32_t num_primitives = 0;  // active triangles and boxes, or active instances
   uint32_t stack_need = 0;      // entries that the worst ray needs in this structure
   uint64_t bytes = 0;
-  uint64_t reserved[2]{};
+  uint32_t treelets = 0;  // block of the table of treelets (rtunit/treelets.h); 0: there is none
+  uint32_t reserved[3]{};
 };
 static_assert(sizeof(StructureHeader) == kRootBlock * kBlockBytes);
 

@@ -123,7 +123,7 @@ TEST_CASE("boxes as decoded contain what they were made of") {
         tree.nodes[i + 1] = leaf;
         tree.children[i] = i + 1;
       }
-      const mem::HostBlock bytes = format->encode(tree, 1);
+      const mem::HostBlock bytes = format->encode(tree, format->place(tree, {}), 1);
       std::vector<DecodedChild> decoded(format->width());
       const uint32_t count = format->decode(bytes.data() + kRootBlock * kBlockBytes, decoded);
       REQUIRE(count == tree.nodes[0].num_children);

@@ -48,14 +48,14 @@ struct Scene {
   std::vector<Instance> instances;
 };
 
-// Holds a scene in memory, in one node format.
+// Holds a scene in memory, as some options build it.
 struct BuiltScene {
   mem::AddressSpace memory;
   std::vector<StructureInfo> bottoms;
   StructureInfo top;
-  BuiltScene(const Scene& scene, const std::string& format) {
-    BuildOptions options;
-    options.format.name = format;
+  BuiltScene(const Scene& scene, const std::string& format)
+      : BuiltScene(scene, BuildOptions{format.c_str()}) {}
+  BuiltScene(const Scene& scene, const BuildOptions& options) {
     for (const BottomScene& b : scene.bottoms)
       bottoms.push_back(build_bottom(memory, "bottom", b.level, options));
     top = build_top(memory, "top", scene.instances, bottoms, options);

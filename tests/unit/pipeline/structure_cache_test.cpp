@@ -65,7 +65,7 @@ TEST_CASE("a structure that was built is found, and is to the byte what would be
   CHECK(is_found(folder, strip.level()));
 }
 
-TEST_CASE("other positions, indices, flags, transforms, formats and builders find nothing") {
+TEST_CASE("other positions, indices, flags, transforms, formats, layouts and builders find nothing") {
   const Folder folder;
   const Strip strip;
   is_found(folder, strip.level());
@@ -77,13 +77,15 @@ TEST_CASE("other positions, indices, flags, transforms, formats and builders fin
   not_opaque.geometries[0].opaque = false;
   placed.geometries[0].transform[3] = 1;
   two.geometries.push_back(two.geometries[0]);
-  rt::BuildOptions wide, single;
+  rt::BuildOptions wide, single, treelets;
   wide.format.name = "bvh8";
   single.pair_triangles = false;
+  treelets.layout.name = "treelet_breadth_first";
 
   for (const rt::BottomLevel& other : {moved.level(), wound.level(), not_opaque, placed, two})
     CHECK_FALSE(is_found(folder, other));
-  for (const rt::BuildOptions& other : {wide, single}) CHECK_FALSE(is_found(folder, strip.level(), other));
+  for (const rt::BuildOptions& other : {wide, single, treelets})
+    CHECK_FALSE(is_found(folder, strip.level(), other));
   CHECK_FALSE(is_found(folder, strip.level(), {}, "build 2"));
   CHECK(is_found(folder, strip.level()));
 }
