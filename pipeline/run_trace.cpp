@@ -101,7 +101,7 @@ void keep_within(TraceTable& table, uint64_t room) {
 
 TraceRecorders record_trace(TimingMachine& machine, const exec::Image& image, const TraceRequest& request) {
   TraceRecorders recorders;
-  const uint32_t cores = machine.num_cores(), places = machine.params().rt.warps,
+  const uint32_t cores = machine.num_cores(), places = rt::RtUnit::places(machine.params().rt),
                  slots = machine.core(0).num_slots();
   const uint64_t room = (request.limit - counter_room(request) - channel_room(request)) / cores,
                  least = core::TraceRecorder::least_room(slots, places) + 1;

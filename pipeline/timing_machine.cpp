@@ -71,6 +71,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
       rt.tables = core::CoreCell::table_layout(world, world.memory->reserve(bytes));
     if (const uint64_t bytes = rt::RtUnit::stack_bytes_per_warp(params_.rt))
       rt.stacks = world.memory->reserve(bytes * params_.core.warps);
+    if (const uint64_t bytes = rt::RtUnit::pool_bytes(params_.rt))
+      rt.ray_states = world.memory->reserve(bytes);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
     const core::CoreCell::Context context{.world = world,

@@ -13,6 +13,7 @@
 #include "rtunit/coalescer.h"
 #include "rtunit/prefetcher.h"
 #include "rtunit/ray_entry.h"
+#include "rtunit/ray_pool.h"
 #include "rtunit/ray_scheduler.h"
 #include "rtunit/shortcuts/shortcuts.h"
 #include "rtunit/stack_model.h"
@@ -76,6 +77,9 @@ struct Params {
   PolicyChoice<StackModel> stack{"short_stack"};
   PolicyChoice<WorkMapping> mapping{"own_ray"};
   PolicyChoice<RayEntry> entry{"root"};
+  PolicyChoice<RayPool> pool{"none"};
+  uint32_t pool_warps = 16;  // Choice: as many as wait for the unit in a core that is full of thin warps
+  bool pool_stacks = true;
   PolicyChoice<Prefetcher> prefetch{"none"};
   uint32_t prefetch_queue =
       512;  // Choice: 16 entries for each lane of a warp; the published one has no bound
@@ -128,6 +132,13 @@ struct Params {
         policy(&Params::mapping, "mapping",
                "Selects which lanes visit nodes for the rays of other lanes of their warp."),
         policy(&Params::entry, "entry", "Selects where a ray begins its walk."),
+        policy(&Params::pool, "pool", "Selects which rays form the warps of the unit."),
+        param(&Params::pool_warps, "pool_warps", "warp",
+              "Number of the core's warps whose rays the unit accepts at once, with a pool.", 1, 128),
+        flag(
+            &Params::pool_stacks, "pool_stacks",
+            "True: a ray that goes back to the pool takes the entries of its stack along, as far as they fit "
+            "into a line. False: 32 B move."),
         policy(&Params::prefetch, "prefetch", "Selects which nodes are read before a ray asks for them."),
         param(&Params::prefetch_queue, "prefetch_queue", "sector",
               "Largest number of sectors that wait to be read ahead.", 1, 65536),

@@ -20,7 +20,7 @@ RayWalk::RayWalk(const Params& params, const mem::AddressSpace& memory, WarpBuff
       child_order_(params.child_order.make({})) {
 }
 
-void RayWalk::start(uint32_t slot, int lane, Cycle now) {
+void RayWalk::start(uint32_t slot, int lane, Cycle now, Cycle waited) {
   RayState& ray = buffer_[slot].ray_of(lane);
   GLINT_DCHECK(ray.status == RayStatus::Traversing, "lane {} has no ray to traverse", lane);
   if (ray.nodes_visited == 0) {
@@ -34,6 +34,7 @@ void RayWalk::start(uint32_t slot, int lane, Cycle now) {
     stats_.ray_nodes.remove(ray.nodes_visited);
     stats_.ray_latency.remove(ray.unit_cycles);
   }
+  ray.unit_cycles += waited;
   ray.rules.retest = retest_;
   ray.rules.order = child_order_->for_rays();
   start_part(slot, lane, now);
@@ -78,7 +79,8 @@ void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
   const Fetch& node = buffer_[slot].read[size_t(lane)].what;
   RayState& ray = buffer_[slot].ray_of(lane);
   node_visited_.fire([&] {
-    return NodeVisited{now, buffer_[slot].warp_slot, buffer_[slot].owner_of(lane), node};
+    const Thread thread = buffer_[slot].thread_of(lane);
+    return NodeVisited{now, thread.warp_slot, thread.lane, node};
   });
   const uint32_t boxes = ray.box_tests, triangles = ray.triangle_tests, hits = ray.hits_in_interval;
   const int before = ray.stack_size;

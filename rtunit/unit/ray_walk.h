@@ -29,8 +29,9 @@ class RayWalk {
   RayWalk(const Params& params, const mem::AddressSpace& memory, WarpBuffer& buffer, RtStats& stats);
   void add(WalkHook& hook) { hooks_.push_back(&hook); }
 
-  // Begins the walk of a ray that enters the unit, for the first time or again after a shader.
-  void start(uint32_t slot, int lane, Cycle now);
+  // Begins the walk of a ray that enters the unit, for the first time or again after a shader. `waited`:
+  // cycles that it was in the unit before it got its lane.
+  void start(uint32_t slot, int lane, Cycle now, Cycle waited = 0);
   // Continues with a lane that is between two nodes. The lane wants the next node or stops, unless a hook has
   // something to do first.
   void go_on(uint32_t slot, int lane, Cycle now);

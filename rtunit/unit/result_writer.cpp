@@ -20,6 +20,7 @@ uint64_t ResultWriter::bytes(const Params& params) {
 }
 
 bool ResultWriter::holds(uint32_t slot, Cycle) {
+  if (buffer_[slot].mask == 0) return false;  // All rays have gone back to the pool.
   unwritten_[slot] = buffer_[slot].mask;
   waiting_.push(slot);
   return true;

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <fmt/format.h>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/check.h"
@@ -18,6 +19,34 @@
 #include "rtunit/unit/table_writer.h"
 
 namespace glint::rt {
+namespace {
+
+bool has_pool(const Params& params) {
+  return params.pool.name != RayPool::kNone;
+}
+
+// Returns why the ray pool does not go with another choice, or nothing when it does.
+std::string why_no_pool(const Params& params) {
+  const auto why = [&](std::string_view key, std::string_view value, std::string_view reason) {
+    return fmt::format("rt.pool = \"{}\" does not go with {} = \"{}\": {}", params.pool.name, key, value,
+                       reason);
+  };
+  if (params.stack.make({})->keeps_path())
+    return why("rt.stack", params.stack.name,
+               "that stack follows the path of a ray in its lane, and rays of a pool change their lanes");
+  if (params.mapping.name != WorkMapping::kOwnRay)
+    return why("rt.mapping", params.mapping.name,
+               "lanes that work for one ray would have to move together when it changes its warp");
+  if (params.entry.name != RayEntry::kRoot)
+    return why("rt.entry", params.entry.name,
+               "a look-up follows its ray in one lane, and rays of a pool change their lanes");
+  if (params.any_hit.make({})->table_rows() != 0 && !params.shortcuts.store_each_hit)
+    return why("rt.any_hit", params.any_hit.name,
+               "lanes of a warp share the lines of their candidate tables, and a pool takes the lanes apart");
+  return {};
+}
+
+}  // namespace
 
 uint64_t RtUnit::result_bytes(const Params& params) {
   if (params.shortcuts.store_each_hit) return HitStores::kBytes;
@@ -28,12 +57,21 @@ uint64_t RtUnit::stack_bytes_per_warp(const Params& params) {
   return StackMover::bytes_per_warp(*params.stack.make({}));
 }
 
+uint64_t RtUnit::pool_bytes(const Params& params) {
+  return has_pool(params) ? WarpFormer::bytes(params) : 0;
+}
+
+uint32_t RtUnit::places(const Params& params) {
+  return has_pool(params) ? params.pool_warps : params.warps;
+}
+
 std::string RtUnit::why_not_together(const Params& params) {
   if (params.mapping.name != WorkMapping::kOwnRay && params.stack.make({})->keeps_path())
     return fmt::format(
         "rt.mapping = \"{}\" does not go with rt.stack = \"{}\": that stack follows the path of a whole ray, "
         "and lanes that share a ray each follow a part of it",
         params.mapping.name, params.stack.name);
+  if (has_pool(params)) return why_no_pool(params);
   return {};
 }
 
@@ -59,6 +97,8 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
         add<HitStores>(shortcuts.store_latency, context.l1, buffer_, stats_, context.results, has_tables);
     before_tests_.push_back([&stores](Cycle now) { stores.acknowledge(now); });
   }
+  if (has_pool(params))
+    former_ = &add<WarpFormer>(params, context.ray_states, context.l1, buffer_, fetches_, walk_, stats_);
   auto stack = params.stack.make({});
   std::unique_ptr<RayEntry> entry;
   if (params.entry.name != RayEntry::kRoot) entry = params.entry.make({&stats_, context.memory});
@@ -76,6 +116,7 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
   }
   if (params.mapping.name != WorkMapping::kOwnRay)
     sharing_ = &add<WorkSharing>(params, context.memory, buffer_, walk_, stats_);
+  if (former_) walk_.add(former_->taker());
   if (shortcuts.same_cycle_hits)
     after_requests_.push_back([this](Cycle now) {
       receive(now);
@@ -96,12 +137,15 @@ Part& RtUnit::add(Args&&... args) {
 void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) {
   GLINT_CHECK(can_accept() && mask != 0, "warp {} submitted to a full RT unit or without rays", warp_slot);
   due_ = 0;
+  ++stats_.warps;
+  if (former_) return former_->accept(now, warp_slot, mask, states);
   const uint32_t slot = buffer_.admit(now, warp_slot, mask, states);
   for_each_lane(mask, [&](int lane) { walk_.start(slot, lane, now); });
 }
 
 void RtUnit::run(Cycle now) {
   buffer_.retire(now);
+  if (former_) former_->form(now);
   for (const auto& step : before_tests_) step(now);
   pipelines_.finish_tests(now);
   receive(now);

@@ -22,6 +22,7 @@
 #include "rtunit/unit/rt_stats.h"
 #include "rtunit/unit/test_pipelines.h"
 #include "rtunit/unit/warp_buffer.h"
+#include "rtunit/unit/warp_former.h"
 #include "rtunit/unit/work_sharing.h"
 
 namespace glint::rt {
@@ -44,17 +45,24 @@ class RtUnit final : public RtPort {
     Address results = 0;   // physical and line-aligned; result_bytes() long
     TableLayout tables{};  // line-aligned; candidates of rays with tables are written here
     Address stacks = 0;    // physical and line-aligned; stack_bytes_per_warp() for each warp slot of the core
+    Address ray_states = 0;  // physical and line-aligned; pool_bytes() long
   };
   RtUnit(const Params& params, const Context& context);
   // Returns the bytes that Context::results must hold. 0: it is not used.
   static uint64_t result_bytes(const Params& params);
   static uint64_t stack_bytes_per_warp(const Params& params);
+  // Returns the bytes that Context::ray_states must hold. 0: they are not used.
+  static uint64_t pool_bytes(const Params& params);
+  // Returns the number of warps that the unit accepts at once.
+  static uint32_t places(const Params& params);
   // Returns why the chosen policies do not go together, or nothing when they do.
   static std::string why_not_together(const Params& params);
 
-  bool can_accept() const override { return buffer_.has_room(); }
+  bool can_accept() const override { return former_ ? former_->has_room() : buffer_.has_room(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
-  std::optional<uint32_t> pop_completion(Cycle) override { return buffer_.pop_completion(); }
+  std::optional<uint32_t> pop_completion(Cycle now) override {
+    return former_ ? former_->pop_completion(now) : buffer_.pop_completion();
+  }
   void tick(Cycle now) override {
     if (now >= due_ || l1_.has_answer(now, mem::Client::RtUnit)) run(now);
   }
@@ -71,15 +79,20 @@ class RtUnit final : public RtPort {
   }
   // Returns RtStats::warp_cycles as it will be at the start of cycle `at`, when nothing happens before.
   uint64_t warp_cycles_until(Cycle at) const { return account_.warp_cycles_until(at); }
-  uint32_t num_resident() const { return buffer_.num_resident(); }
+  uint32_t num_resident() const { return former_ ? former_->num_accepted() : buffer_.num_resident(); }
   Probe<NodeVisited>& node_visited() { return walk_.node_visited(); }
-  Probe<WarpMoved>& warp_moved() { return buffer_.warp_moved(); }
+  Probe<WarpMoved>& warp_moved() { return former_ ? former_->warp_moved() : buffer_.warp_moved(); }
   // Calls each(warp slot, lanes) for all whose rays the read that is just being sent serves. `token` is the
   // token of its request.
   template <class Each>
   void for_each_reader(mem::Token token, Each&& each) const {
     fetches_.for_each_reader(token, [&](uint32_t slot, LaneMask lanes) {
-      each(buffer_[slot].warp_slot, buffer_[slot].owners_of(lanes));
+      const BufferSlot& at = buffer_[slot];
+      if (at.threads)
+        for_each_lane(
+            lanes, [&](int lane) { each(at.threads[lane].warp_slot, LaneMask{1} << at.threads[lane].lane); });
+      else
+        each(at.warp_slot, at.owners_of(lanes));
     });
   }
 
@@ -107,6 +120,7 @@ class RtUnit final : public RtPort {
   std::vector<std::shared_ptr<void>> parts_;  // owns the parts that not every configuration has
   std::vector<RequestSource*> sources_;       // the sources among these parts, by priority
   PrefetchSender* prefetches_ = nullptr;      // sends when no source does
+  WarpFormer* former_ = nullptr;              // forms the warps, when there is a pool
   WorkSharing* sharing_ = nullptr;            // lets lanes help each other
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
   // This is the first cycle with work of the unit's own, unless answers of the L1 come before. It is 0 when a

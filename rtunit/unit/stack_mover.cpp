@@ -61,7 +61,8 @@ Cycle StackMover::next_event(Cycle now) const {
 
 bool StackMover::send(Cycle now) {
   const Move move = moves_.front();
-  const Address at = layout_.sector(buffer_[move.slot].warp_slot, move.row, move.lane),
+  const Thread thread = buffer_[move.slot].thread_of(move.lane);
+  const Address at = layout_.sector(thread.warp_slot, move.row, thread.lane),
                 offset = at & (l1_.line_bytes() - 1);
   mem::Request request;
   request.line = at - offset;

@@ -32,7 +32,6 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
   note_change(slot);
   ++num_resident_;
   num_rays_ += num_lanes(mask);
-  ++stats_.warps;
   warp_moved_.fire([&] { return WarpMoved{now, slot, warp_slot, false, mask, states}; });
   return slot;
 }
@@ -40,6 +39,12 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
 void WarpBuffer::stop(uint32_t slot, int lane, Cycle now) {
   --num_rays_;
   slots_[slot].stopped |= LaneMask{1} << lane;
+  if (slots_[slot].is_done()) leave(slot, now);
+}
+
+void WarpBuffer::withdraw(uint32_t slot, int lane, Cycle now) {
+  --num_rays_;
+  slots_[slot].mask &= ~(LaneMask{1} << lane);
   if (slots_[slot].is_done()) leave(slot, now);
 }
 
@@ -61,7 +66,7 @@ void WarpBuffer::retire_finished(Cycle now) {
     finished_.pop();
     warp_moved_.fire([&] { return WarpMoved{now, index, slot.warp_slot, true, slot.mask, slot.states}; });
     completions_.push(slot.warp_slot);
-    stats_.warp_latency_sum += now - slot.arrived;
+    if (!slot.threads) stats_.warp_latency_sum += now - slot.arrived;
     slot.is_used = false;
     --num_resident_;
   }

@@ -27,6 +27,12 @@ struct WarpMoved {
   const RayState* states = nullptr;
 };
 
+// Names a thread of the core.
+struct Thread {
+  uint32_t warp_slot = 0;
+  int lane = 0;
+};
+
 // Holds one warp in the buffer. At any time a lane of `mask` either wants a read, waits for one, is in a test
 // or has stopped.
 struct BufferSlot {
@@ -39,6 +45,8 @@ struct BufferSlot {
   LaneMask helping = 0;
   RayState* parts = nullptr;
   std::array<uint8_t, kLanes> owner{};
+  // The threads whose rays the lanes have, by lane. Null: they are the threads of `warp_slot`.
+  const Thread* threads = nullptr;
   uint64_t age = 0;  // order of arrival
   Cycle arrived = 0;
   uint32_t unsent_writes = 0;     // The warp stays until the L1 has taken them.
@@ -53,6 +61,8 @@ struct BufferSlot {
   RayState& ray_of(int lane) const { return is_helping(lane) ? parts[lane] : states[lane]; }
   // Returns the lane whose ray a lane works for.
   int owner_of(int lane) const { return is_helping(lane) ? owner[size_t(lane)] : lane; }
+  // Returns the thread whose ray a lane works for.
+  Thread thread_of(int lane) const { return threads ? threads[lane] : Thread{warp_slot, owner_of(lane)}; }
   LaneMask owners_of(LaneMask lanes) const {
     LaneMask out = lanes & ~helping;
     for_each_lane(lanes & helping, [&](int lane) { out |= LaneMask{1} << owner[size_t(lane)]; });
@@ -100,6 +110,8 @@ class WarpBuffer {
   uint64_t take_changes() { return std::exchange(changed_, 0); }
   void note_change(uint32_t slot) { changed_ |= uint64_t{1} << slot; }
   void stop(uint32_t slot, int lane, Cycle now);
+  // Takes a lane out of its warp whose ray is between two nodes.
+  void withdraw(uint32_t slot, int lane, Cycle now);
   void add_writes(uint32_t slot, uint32_t count) { slots_[slot].unsent_writes += count; }
   void write_sent(uint32_t slot, Cycle now);
   // Lets the warp pass the exits that it has not passed yet.

@@ -1,0 +1,164 @@
+// Tests that every registered ray pool keeps the promises of rtunit/ray_pool.h.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/num_lanes.h"
+#include "base/registry.h"
+#include "tests/support/catch.h"
+#include "tests/support/rt_brute.h"
+#include "tests/support/stat_listing.h"
+
+namespace glint::rt::test {
+namespace {
+
+constexpr uint32_t kWarps = 12;
+
+TEST_CASE("a pool names each waiting ray once, and repeats itself exactly") {
+  for (const std::string& name : Registry<RayPool>::names()) {
+    if (name == RayPool::kNone) continue;
+    CAPTURE(name);
+    const auto& entry = Registry<RayPool>::instance().entry(name);
+    const RayPool::Context context{nullptr, 2, kWarps * kLanes};
+    const auto a = entry.make_default(context), b = entry.make_default(context);
+    Random random{5};
+    std::vector<bool> waits(context.rays), was_in(context.rays);
+    std::vector<RayState> rays(context.rays);
+    uint32_t waiting = 0, named = 0;
+    for (Cycle now = 1; now < 400; ++now) {
+      for (uint32_t i = 0; i < 20; ++i) {
+        const uint32_t id = random.below(context.rays);
+        if (waits[id]) continue;
+        const WaitingRay ray{id, !was_in[id], &rays[id]};
+        a->add(ray, now);
+        b->add(ray, now);
+        waits[id] = was_in[id] = true;
+        ++waiting;
+      }
+      std::array<uint32_t, kLanes> ids{}, again{};
+      const uint32_t count = a->form(ids, now);
+      REQUIRE(count == b->form(again, now));
+      REQUIRE(count <= uint32_t(kLanes));
+      for (uint32_t i = 0; i < count; ++i) {
+        REQUIRE(ids[i] == again[i]);
+        REQUIRE(waits[ids[i]]);
+        waits[ids[i]] = false;
+      }
+      if (count == 0) REQUIRE(a->next_event(now) > now);
+      waiting -= count;
+      named += count;
+    }
+    for (Cycle now = 400; waiting != 0 && now < 100'000; ++now) {
+      std::array<uint32_t, kLanes> ids{};
+      const uint32_t count = a->form(ids, now);
+      waiting -= count;
+      if (count == 0) REQUIRE(a->next_event(now) != kNever);
+    }
+    CHECK(waiting == 0);
+    CHECK(named > 2000);
+  }
+}
+
+struct Outcome {
+  std::vector<WarpRays> rays;
+  std::vector<Cycle> completion;
+  std::string stats;
+  uint64_t returned = 0;
+};
+
+// Traces warps of which only some lanes have rays, and these of very different lengths.
+Outcome trace(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top, uint64_t seed,
+              uint32_t flags, bool every_cycle) {
+  Random random{seed};
+  Outcome out;
+  out.rays.resize(kWarps);
+  for (WarpRays& warp : out.rays)
+    for (RayState& state : warp) {
+      state = ray_of(top.address, random.point(12), random.point(1), 0, random.below(3) ? 2 : 60);
+      state.ray.flags = flags;
+      state.rules.end_at_first_hit = false;
+      REQUIRE(begin(state, memory));
+    }
+  stats::Group root(nullptr, "test");
+  mem::FixedLatencyMemory l1(40, 1);
+  RtUnit unit(params, {memory, l1, &root, Address{1} << 30, {}, Address{1} << 32, Address{1} << 33});
+  const Launch done = launch(unit, l1, out.rays, every_cycle);
+  unit.finish(done.last_completion + 1);
+  out.completion = done.completion;
+  out.stats = glint::test::listing(root);
+  const auto at = out.stats.find("\nreturned=");
+  if (at != std::string::npos) out.returned = std::stoull(out.stats.substr(at + 10));
+  CHECK(unit.num_resident() == 0);
+  return out;
+}
+
+TEST_CASE("rays that change their warps find the hits that they find in one, with every other policy") {
+  Random random{8};
+  const Positions positions = soup(random, 600, 8, 3);
+  mem::AddressSpace memory;
+  const StructureInfo top = single(memory, triangles(positions));
+  uint64_t seed = 0, returned = 0, runs = 0;
+  for (const std::string& name : Registry<RayPool>::names())
+    for (const std::string& stack : Registry<StackModel>::names())
+      for (const std::string& prefetch : Registry<Prefetcher>::names())
+        for (const std::string& scheduler : Registry<RayScheduler>::names())
+          for (const uint32_t flags : {0u, 4u}) {
+            Params params;
+            params.pool.name = name;
+            params.stack.name = stack;
+            params.prefetch.name = prefetch;
+            params.scheduler.name = scheduler;
+            params.retest = seed % 4 < 2;
+            params.warps = uint32_t(1 + ++seed % 3);
+            params.pool_warps = uint32_t(2 + seed % 5);
+            params.pool_stacks = seed % 3 != 0;
+            params.mshr_entries = seed % 2 ? 0 : 9;
+            params.result_store = seed % 3 == 0;
+            if (!RtUnit::why_not_together(params).empty()) continue;
+            CAPTURE(name, stack, prefetch, scheduler, flags);
+            const Outcome a = trace(params, memory, top, seed, flags, true),
+                          b = trace(params, memory, top, seed, flags, false);
+            CHECK(a.completion == b.completion);
+            CHECK(glint::test::first_difference(a.stats, b.stats) == "");
+            returned += a.returned;
+            runs += name != RayPool::kNone;
+            Params alone = params;
+            alone.pool.name = RayPool::kNone;
+            const Outcome c = trace(alone, memory, top, seed, flags, true);
+            for (size_t w = 0; w < c.rays.size(); ++w)
+              for (size_t lane = 0; lane < kLanes; ++lane) {
+                const Hit &expected = c.rays[w][lane].committed, &found = a.rays[w][lane].committed;
+                REQUIRE(a.rays[w][lane].status == RayStatus::Done);
+                REQUIRE(std::memcmp(&expected.t, &found.t, 12) == 0);
+                REQUIRE(expected.instance == found.instance);
+                REQUIRE(expected.primitive == found.primitive);
+                REQUIRE(expected.kind == found.kind);
+              }
+          }
+  CHECK(runs > 8);
+  CHECK(returned > 1000);
+}
+
+TEST_CASE("a pool refuses what follows a ray in its lane") {
+  Params params;
+  params.pool.name = "repack";
+  CHECK(RtUnit::why_not_together(params).empty());
+  const auto refused = [&](auto Params::*choice, const char* name) {
+    Params other = params;
+    (other.*choice).name = name;
+    return RtUnit::why_not_together(other).find(name) != std::string::npos;
+  };
+  CHECK(refused(&Params::stack, "restart_trail"));
+  CHECK(refused(&Params::mapping, "cooperative"));
+  CHECK(refused(&Params::entry, "predictor"));
+  CHECK(refused(&Params::any_hit, "deferred"));
+  params.shortcuts.store_each_hit = true;
+  CHECK_FALSE(refused(&Params::any_hit, "deferred"));
+}
+
+}  // namespace
+}  // namespace glint::rt::test
