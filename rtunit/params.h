@@ -86,6 +86,12 @@ struct Params {
   Oracle oracle;
   Shortcuts shortcuts;
   static ParamList params() {
+    ParamList rows = stage_params();
+    const ParamList choices = choice_params();
+    rows.insert(rows.end(), choices.begin(), choices.end());
+    return rows;
+  }
+  static ParamList stage_params() {
     return {
         choice(&Params::unit, "unit",
                "Selects who walks rays: the RT unit, which the other keys under `rt` describe, or ordinary "
@@ -119,7 +125,10 @@ struct Params {
         section(&Params::triangle, "triangle",
                 "Parameters of the pipeline that tests triangles. A triangle is one test."),
         section(&Params::transform, "transform",
-                "Parameters of the pipeline that transforms rays to object space. An instance is one test."),
+                "Parameters of the pipeline that transforms rays to object space. An instance is one test.")};
+  }
+  static ParamList choice_params() {
+    return {
         policy(&Params::scheduler, "scheduler", "Selects which warp of the unit sends a node request."),
         policy(&Params::any_hit, "any_hit",
                "Selects when intersection and any-hit shaders run: at each candidate, or over a table after "
