@@ -45,6 +45,7 @@ enum Binding : uint32_t {
 };
 
 constexpr uint64_t kLeastLarge = 50'000;  // primitives: a smaller model gains nothing from several threads
+constexpr uint32_t kOcclusionReach = 0;   // constant_id in shaders/ambient_occlusion/raygen.rgen
 constexpr uint32_t kSphereRecord = 1;     // hit record of procedural models; triangles have record 0
 
 rt::Bounds sphere_bounds(const Model& model) {
@@ -92,6 +93,10 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   WorkloadShaders out;
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
+  if (job.frame.ao_reach) {
+    const float reach = scenes::diagonal(job.scene) * float(job.frame.ao_reach) / 100;
+    glsl.specialization[kOcclusionReach] = std::bit_cast<uint32_t>(reach);
+  }
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
   const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule,
                                          job.gpu.compiler.contract, compiler_for(job.gpu).queries_call,

@@ -27,10 +27,11 @@ struct RenderParams {
   uint32_t bounces = 16;
   uint32_t shadow_rays = 2;
   uint32_t ao_rays = 4;
+  uint32_t ao_reach = 0;  // percent of the diagonal of the scene's bounding box; 0: as LumiBench has it
 
   // Lists every parameter in the order of run.json. The command line, run.json, the resume keys of suites and
   // the models' repeated runs all follow this list.
-  static constexpr std::array<RenderParam, 11> params();
+  static constexpr std::array<RenderParam, 12> params();
 };
 
 // Describes one parameter of a frame.
@@ -43,7 +44,7 @@ struct RenderParam {
   bool is_optional = false;  // left out of run.json where the value is 0, and 0 where run.json lacks it
 };
 
-constexpr std::array<RenderParam, 11> RenderParams::params() {
+constexpr std::array<RenderParam, 12> RenderParams::params() {
   constexpr uint32_t kAny = ~0u;
   using P = RenderParams;
   return {
@@ -56,6 +57,10 @@ constexpr std::array<RenderParam, 11> RenderParams::params() {
        {&P::shadow_rays, "rays.shadow_rays", "--shadow-rays", "ray", "Number of shadow rays per hit in sh.",
         1, 4096},
        {&P::ao_rays, "rays.ao_rays", "--ao-rays", "ray", "Number of occlusion rays per hit in ao.", 1, 4096},
+       {&P::ao_reach, "rays.ao_reach", "--ao-reach", "%",
+        "Length of occlusion rays in ao, as a percentage of the diagonal of the scene's bounding box; 0: 10 "
+        "world units in every scene, as in LumiBench.",
+        0, 100, true},
        {&P::crop_x, "crop.x", "", "pixel", "First column of the window.", 0, kMaxSide, true},
        {&P::crop_y, "crop.y", "", "pixel", "First row of the window.", 0, kMaxSide, true},
        {&P::frame_width, "crop.frame_width", "", "pixel", "Width of the frame that has the window.", 0,

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cctype>
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 
 #include "base/diagnostics.h"
 #include "scenes/import/scene_file.h"
@@ -132,6 +135,18 @@ std::vector<Instance> instances_of(const Scene& scene) {
   std::vector<Instance> once(scene.models.size());
   for (uint32_t i = 0; i < once.size(); ++i) once[i].model = i;
   return once;
+}
+
+float diagonal(const Scene& scene) {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  Vec3 lower{inf, inf, inf}, upper = -lower;
+  for (const Instance& instance : instances_of(scene))
+    for (const Vertex& vertex : scene.models[instance.model].vertices) {
+      const Vec3 place = Vec4(vertex.position, 1.0f) * instance.to_world;  // GLM's columns are the rows
+      lower = glm::min(lower, place);
+      upper = glm::max(upper, place);
+    }
+  return lower[0] <= upper[0] ? glm::length(upper - lower) : 0;
 }
 
 uint64_t Scene::triangles() const {

@@ -109,6 +109,10 @@ struct Scene {
 // Returns Scene::instances, or each model once when the scene lists no instances.
 std::vector<Instance> instances_of(const Scene& scene);
 
+// Returns the length of the diagonal of the box around everything in the world, in world units. It is 0 for
+// an empty scene.
+float diagonal(const Scene& scene);
+
 struct LoadOptions {
   std::string assets;       // folder of original data; empty: there is none
   bool instancing = false;  // Models that are affine copies of an earlier one become instances of it.

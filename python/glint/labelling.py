@@ -11,7 +11,7 @@ from .run_directory import Run
 
 BETWEEN = " · "  # separates the words of a label
 _KEYS = 2  # keys shown if runs differ in more; more are shown only if fewer would not tell runs apart
-_RAYS = {"rays.bounces": "bounces", "rays.shadow_rays": "shadow rays", "rays.ao_rays": "AO rays", "seed": "seed"}
+_RAYS = {"rays.bounces": "bounces", "rays.shadow_rays": "shadow rays", "rays.ao_rays": "AO rays", "rays.ao_reach": "AO reach", "seed": "seed"}
 _CROP = ("crop.x", "crop.y", "crop.frame_width", "crop.frame_height")
 
 

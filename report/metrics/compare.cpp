@@ -88,7 +88,8 @@ std::string different_work(const RunRecord& before, const RunRecord& after) {
                                     "rays.bounces",
                                     "mode",
                                     "rays.shadow_rays",
-                                    "rays.ao_rays"};
+                                    "rays.ao_rays",
+                                    "rays.ao_reach"};
   facts.insert(facts.end(), overrides.begin(), overrides.end());
   std::string out;
   for (const std::string& fact : facts) {

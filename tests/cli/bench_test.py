@@ -17,7 +17,9 @@ GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).res
 SMALL = ["--size", "16x16", "--spp", "1"]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "tests/cli"))
 import check_paper  # noqa: E402
+from glint_case import read_png  # noqa: E402
 
 
 class BenchTest(unittest.TestCase):
@@ -65,6 +67,18 @@ class Workloads(BenchTest):
         self.assertGreater(three[1], 0)
         one, four = self.rays("SHIP_SH", "--shadow-rays", "1"), self.rays("SHIP_SH", "--shadow-rays", "4")
         self.assertEqual((one[0] - one[1], four[1]), (256, 4 * one[1]))  # outdoors, all rays go the same way
+
+
+    def test_longer_occlusion_rays_meet_more_and_darken_the_picture(self):
+        def light(*options):
+            self.glint(0, "run", "SHIP_AO", *SMALL, *options, "--mode", "functional", "--out", "out")
+            return sum(read_png(self.folder / "out/image.png")[2])
+
+        self.assertEqual(light("--ao-reach", "0"), light())
+        self.assertGreater(light("--ao-reach", "1"), light("--ao-reach", "10"))
+        self.assertGreater(light("--ao-reach", "10"), light("--ao-reach", "60"))
+        self.assertEqual(json.loads((self.folder / "out/run.json").read_text())["rays"]["ao_reach"], 60)
+        self.glint(2, "run", "SHIP_AO", "--ao-reach", "101")
 
 
 class Bench(BenchTest):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: lab_test.py GLINT SOURCE_DIR [SUITE...]"""
 import csv
+import json
 import math
 
 from glint_case import ROOT, GlintTest, main
@@ -90,6 +91,13 @@ class Runs(LabTest):
         text = self.lab(0, self.experiment(), "--config", "mobile", "--workloads", "SHIP_SH").stdout
         self.assertIn("machine: mobile", text)
         self.assertTrue((self.folder / "out/lab-mine-mobile/base/SHIP_SH/run.json").exists())
+
+    def test_an_arm_has_the_reach_of_the_experiment_or_its_own(self):
+        text = SMALL.format(title="x", setting="rt.warps=1", published=1).replace("_SH", "_AO").replace('size =', 'ao_reach = 30\nsize =')
+        self.lab(0, self.write("mine.toml", text.replace('against = "base"', 'against = "base"\nao_reach = 0')), "--workloads", "SHIP_AO")
+        reach = lambda arm: json.loads((self.folder / f"out/lab-mine/{arm}/SHIP_AO/run.json").read_text())["rays"].get("ao_reach")
+        self.assertEqual((reach("base"), reach("other")), (30, None))
+        self.expect(2, ["bad.toml:", "'ao_reach'", "0 to 100"], "lab", self.write("bad.toml", text.replace("30", "300")))
 
     def test_what_is_complete_is_not_run_again(self):
         name = self.experiment()

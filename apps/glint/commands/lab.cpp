@@ -98,6 +98,7 @@ BenchOptions bench_of(const Experiment& experiment, const LabArm& arm, const Lab
   out.frame.size = options.size.empty() ? experiment.size : options.size;
   out.frame.params.samples = experiment.samples;
   out.frame.params.bounces = experiment.bounces;
+  out.frame.params.ao_reach = arm.ao_reach.value_or(experiment.ao_reach);
   out.processes = options.processes;
   out.resume = true;
   out.stats = "compact";

@@ -32,6 +32,7 @@ class ExperimentReader {
     out.size = table.text("size", out.size);
     out.samples = uint32_t(table.integer("spp", out.samples, 1, 65536));
     out.bounces = uint32_t(table.integer("bounces", out.bounces, 1, 1000));
+    out.ao_reach = uint32_t(table.integer("ao_reach", out.ao_reach, 0, 100));
     for (const Value* arm : table.tables("arm")) out.arms.push_back(read_arm(*arm, out.arms));
     table.finish();
     if (out.arms.empty() && !errors_.has_errors())
@@ -48,6 +49,7 @@ class ExperimentReader {
     out.against = table.text("against");
     out.settings = table.texts("set");
     out.workloads = table.texts("workloads");
+    if (const auto reach = table.optional_integer("ao_reach", 0, 100)) out.ao_reach = uint32_t(*reach);
     out.published = read_number(table, "published");
     out.expected = read_band(table, "expected");
     out.least = read_number(table, "least");

@@ -31,6 +31,7 @@ struct LabArm {
   std::optional<double> published;               // speed-up in the source: geometric mean
   std::optional<Band> expected;                  // of the geometric mean of the speed-ups
   std::optional<double> least;                   // no workload may have a smaller speed-up
+  std::optional<uint32_t> ao_reach;              // none: that of the experiment
   std::vector<LabFigure> figures;
 };
 
@@ -38,7 +39,7 @@ struct Experiment {
   std::string name, title, source, config;
   std::vector<std::string> settings, workloads;  // settings of all arms
   std::string size = "128x128";
-  uint32_t samples = 1, bounces = 16;
+  uint32_t samples = 1, bounces = 16, ao_reach = 0;
   std::vector<LabArm> arms;
 };
 

@@ -213,6 +213,18 @@ TEST_CASE("the original ship loads with 6,255 triangles and 11 materials from th
   CHECK(bounds(scene.models[0]).upper[1] == Approx(-9 + 1543).margin(1));
 }
 
+TEST_CASE("the diagonal is that of the box around all instances in the world") {
+  Scene scene;
+  CHECK(diagonal(scene) == 0);
+  add_vertex(scene.models.emplace_back(), {0, 0, 0}, {}, 0);
+  add_vertex(scene.models[0], {1, 2, 2}, {}, 0);
+  CHECK(diagonal(scene) == 3);
+  scene.instances.resize(2);
+  scene.instances[1].to_world =
+      Affine{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 4};  // swaps x and y, and moves along z
+  CHECK(diagonal(scene) == Approx(std::sqrt(4.0f + 4.0f + 36.0f)));
+}
+
 TEST_CASE("placing turns by a right-handed angle about y, then scales, then moves") {
   Model model;
   add_vertex(model, {1, 2, 0}, {1, 0, 0}, 0);
