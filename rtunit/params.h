@@ -37,11 +37,15 @@ struct PipelineParams {
 
 // Switches that give the unit what no hardware can have. Each bounds what a kind of idea can gain.
 struct Oracle {
-  bool fetch_hits = false;
+  bool fetch_hits = false, any_lane = false;
   static ParamList params() {
     return {flag(&Oracle::fetch_hits, "fetch_hits",
                  "True: every node that a ray asks for is in the L1 already and moves no bytes, which bounds "
-                 "what prefetching can gain. False: nodes come through the L1.")};
+                 "what prefetching can gain. False: nodes come through the L1."),
+            flag(&Oracle::any_lane, "any_lane",
+                 "True: the unit takes a warp as soon as one of its `rt.warps` x 32 lanes has no ray, which "
+                 "bounds what forming warps anew can gain. False: a warp's lanes are free when its last ray "
+                 "has stopped.")};
   }
 };
 
@@ -50,6 +54,8 @@ inline constexpr std::string_view kHardware = "hardware", kSoftware = "software"
 inline std::vector<std::string> unit_names() {
   return {std::string(kHardware), std::string(kSoftware)};
 }
+
+inline constexpr uint32_t kMostWarps = 64;  // that the unit can hold, because masks of them have 64 bits
 
 struct Params {
   std::string unit{kHardware};
@@ -91,13 +97,15 @@ struct Params {
     rows.insert(rows.end(), choices.begin(), choices.end());
     return rows;
   }
+  // Returns the number of slots of the warp buffer.
+  uint32_t slots() const { return oracle.any_lane ? kMostWarps : warps; }
   static ParamList stage_params() {
     return {
         choice(&Params::unit, "unit",
                "Selects who walks rays: the RT unit, which the other keys under `rt` describe, or ordinary "
                "instructions of the core (shaders/traversal).",
                &unit_names),
-        param(&Params::warps, "warps", "warp", "Number of warps that the unit holds at once.", 1, 64),
+        param(&Params::warps, "warps", "warp", "Number of warps that the unit holds at once.", 1, kMostWarps),
         param(&Params::requests_per_cycle, "requests_per_cycle", "request",
               "Largest number of requests sent to the L1 in a cycle.", 1, 16),
         param(&Params::request_bytes, "request_bytes", "byte",

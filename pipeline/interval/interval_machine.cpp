@@ -30,7 +30,7 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
       {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
            rt.shortcuts.store_each_hit,
        "rt.result_store and the accesses of rt.shortcuts"},
-      {rt.oracle.fetch_hits, "rt.oracle"},
+      {rt.oracle.fetch_hits || rt.oracle.any_lane, "rt.oracle"},
       {!params.core.fetch.perfect || !params.core.constant.perfect,
        "caches of instructions and constants (core.fetch.perfect = false or core.constant.perfect = false)"}};
   std::string message;

@@ -30,10 +30,10 @@ FetchQueue::FetchQueue(const Params& params, const mem::AddressSpace& memory, me
       l1_(l1),
       buffer_(buffer),
       stats_(stats),
-      scheduler_(params.scheduler.make({&stats, params.warps})),
+      scheduler_(params.scheduler.make({&stats, buffer.size()})),
       coalescer_(params.coalescing.make({})),
-      views_(params.warps),
-      reads_(size_t(params.warps) * kLanes) {
+      views_(buffer.size()),
+      reads_(size_t{buffer.size()} * kLanes) {
   for (size_t i = reads_.size(); i-- > 0;) free_.push_back(uint32_t(i));
 }
 

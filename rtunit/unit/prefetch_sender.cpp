@@ -12,7 +12,7 @@ PrefetchSender::PrefetchSender(const Params& params, const mem::AddressSpace& me
       l1_(l1),
       buffer_(buffer),
       queue_(params.prefetch_queue, memory, &stats),
-      policy_(params.prefetch.make({&stats, queue_, memory, params.warps})) {
+      policy_(params.prefetch.make({&stats, queue_, memory, params.slots()})) {
 }
 
 void PrefetchSender::entered(uint32_t slot, int lane, Cycle now) {

@@ -16,7 +16,7 @@ ResultWriter::ResultWriter(mem::L1Port& l1, WarpBuffer& buffer, RtStats& stats, 
 }
 
 uint64_t ResultWriter::bytes(const Params& params) {
-  return uint64_t{params.warps} * kLanes * mem::kSectorBytes;
+  return uint64_t{params.slots()} * kLanes * mem::kSectorBytes;
 }
 
 bool ResultWriter::holds(uint32_t slot, Cycle) {

@@ -37,6 +37,8 @@ std::string why_no_pool(const Params& params) {
   if (params.mapping.name != WorkMapping::kOwnRay)
     return why("rt.mapping", params.mapping.name,
                "lanes that work for one ray would have to move together when it changes its warp");
+  if (params.oracle.any_lane)
+    return why("rt.oracle.any_lane", "true", "with that oracle, no lane is without a ray already");
   if (params.entry.name != RayEntry::kRoot)
     return why("rt.entry", params.entry.name,
                "a look-up follows its ray in one lane, and rays of a pool change their lanes");
@@ -62,7 +64,7 @@ uint64_t RtUnit::pool_bytes(const Params& params) {
 }
 
 uint32_t RtUnit::places(const Params& params) {
-  return has_pool(params) ? params.pool_warps : params.warps;
+  return has_pool(params) ? params.pool_warps : params.slots();
 }
 
 std::string RtUnit::why_not_together(const Params& params) {
@@ -154,7 +156,7 @@ void RtUnit::run(Cycle now) {
   const Stall reason = send_requests(now);
   for (const auto& step : after_requests_) step(now);
   account_.account(now, reason, idle_reason(), {buffer_.num_resident(), buffer_.num_rays()});
-  due_ = find_due(now);
+  due_ = buffer_.take_opened() ? now + 1 : find_due(now);
 }
 
 // Passes what has arrived to the pipelines. A part of a stack needs no test.

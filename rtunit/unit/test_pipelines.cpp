@@ -9,7 +9,7 @@
 namespace glint::rt {
 
 TestPipelines::TestPipelines(const Params& params, const mem::AddressSpace& memory, RayWalk& walk)
-    : num_lanes_(size_t{params.warps} * kLanes), memory_(memory), walk_(walk) {
+    : num_lanes_(size_t{params.slots()} * kLanes), memory_(memory), walk_(walk) {
   add(params.box);
   add(params.triangle);
   add(params.transform);

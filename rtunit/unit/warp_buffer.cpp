@@ -11,9 +11,10 @@ namespace glint::rt {
 WarpBuffer::WarpBuffer(const Params& params, RtStats& stats)
     : retires_per_cycle_(params.retires_per_cycle),
       stats_(stats),
-      slots_(params.warps),
-      finished_(params.warps),
-      completions_(params.warps) {
+      most_rays_(params.oracle.any_lane ? params.warps * kLanes : ~0u),
+      slots_(params.slots()),
+      finished_(params.slots()),
+      completions_(params.slots()) {
 }
 
 uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) {
@@ -37,7 +38,7 @@ uint32_t WarpBuffer::admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayStat
 }
 
 void WarpBuffer::stop(uint32_t slot, int lane, Cycle now) {
-  --num_rays_;
+  opened_ |= num_rays_-- == most_rays_;
   slots_[slot].stopped |= LaneMask{1} << lane;
   if (slots_[slot].is_done()) leave(slot, now);
 }

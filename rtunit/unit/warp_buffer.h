@@ -85,7 +85,9 @@ class WarpBuffer {
   // Adds an exit. A warp passes the exits in the order in which they were added.
   void add(WarpExit& exit) { exits_.push_back(&exit); }
 
-  bool has_room() const { return num_resident_ < slots_.size(); }
+  bool has_room() const { return num_resident_ < slots_.size() && num_rays_ < most_rays_; }
+  // Returns whether a lane has become free since the last call, where rt.oracle.any_lane makes that room.
+  bool take_opened() { return std::exchange(opened_, false); }
   // Returns the slot that the warp takes.
   uint32_t admit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states);
   BufferSlot& operator[](uint32_t slot) { return slots_[slot]; }
@@ -139,6 +141,7 @@ class WarpBuffer {
   const uint32_t retires_per_cycle_;
   RtStats& stats_;
   Probe<WarpMoved> warp_moved_;
+  const uint32_t most_rays_;  // With this number of rays or more the buffer takes no warp.
   std::vector<BufferSlot> slots_;
   uint64_t wanting_ = 0;  // bit i: some lane of slot i wants a read
   uint64_t changed_ = 0;  // bit i: take_changes() tells of slot i
@@ -146,6 +149,7 @@ class WarpBuffer {
   mem::Ring<uint32_t> finished_;     // slots whose warps have passed all exits
   mem::Ring<uint32_t> completions_;  // the core's warp slots, to be given back
   uint32_t num_resident_ = 0, num_rays_ = 0;
+  bool opened_ = false;
   uint64_t next_age_ = 0;
 };
 

@@ -26,7 +26,7 @@ WorkSharing::WorkSharing(const Params& params, const mem::AddressSpace& memory, 
       buffer_(buffer),
       walk_(walk),
       stats_(&stats),
-      lanes_(params.warps) {
+      lanes_(params.slots()) {
   for (uint32_t slot = 0; slot < lanes_.size(); ++slot) {
     lanes_[slot].parts.resize(kLanes);
     buffer_[slot].parts = lanes_[slot].parts.data();

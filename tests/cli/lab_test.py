@@ -113,6 +113,57 @@ class Runs(LabTest):
         self.assertIn("has not the published sign: other", done.stderr)
 
 
+class Oracles(LabTest):
+    def cycles(self, workload, config, *options):
+        """Returns cycles and picture of a run on one core, so that its unit has more warps than it holds."""
+        done = self.glint("run", workload, "--size", "32x32", "--spp", "1", "--config", config, "--set", "cores=1", "--out", "run", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return self.stat("run", "gpu.cycles"), (self.folder / "run/image.png").read_bytes()
+
+    def names(self):
+        return [line.split()[0] for line in self.glint("list", "oracles").stdout.splitlines()]
+
+    def test_every_oracle_bounds_and_changes_no_picture(self):
+        gains = dict.fromkeys(self.names(), 0)
+        for workload, config in (("SHIP_PT", "mobile"), ("SHIP_SH", "vulkan-sim-mobile"), ("CHSNT_PT", "mobile")):
+            base, picture = self.cycles(workload, config)
+            for name in gains:
+                cycles, same = self.cycles(workload, config, "--oracle", name)
+                with self.subTest(workload=workload, name=name):
+                    self.assertEqual(same, picture)
+                    self.assertLessEqual(cycles, base)
+                gains[name] += cycles < 0.97 * base
+        self.assertTrue(all(gains.values()), gains)
+
+    def test_skipping_to_events_changes_no_count_under_an_oracle(self):
+        for name in ("no_divergence", "perfect_prediction"):
+            stats = []
+            for options in ([], ["--no-skip"]):
+                self.cycles("CHSNT_PT" if name == "no_divergence" else "SHIP_SH", "mobile", "--oracle", name, "--set", "rt.warps=2", *options)
+                stats.append((self.folder / "run/stats.csv").read_bytes())
+            self.assertEqual(*stats)
+
+    def test_a_setting_wins_over_an_oracle_and_benches_and_experiments_take_oracles(self):
+        config = lambda: (self.folder / "run/config.toml").read_text()
+        self.cycles("SHIP_SH", "mobile", "--oracle", "infinite_tests", "--set", "rt.box.latency=7")
+        self.assertRegex(config(), r"(?s)\[rt\.box\].*?latency = 7\b.*?units = 4096\b")
+        self.cycles("SHIP_SH", "desktop", "--oracle", "ideal_memory")
+        own, like = ([line for line in self.glint("describe", "memory", "--config", one).stdout.splitlines() if " = " in line] for one in ("run/config.toml", "ideal-memory"))
+        self.assertEqual(own, like)
+        self.assertEqual(self.glint("bench", "SHIP_SH", "--size", "8x8", "--spp", "1", "--oracle", "perfect_prefetch", "--out", "bench").returncode, 0)
+        self.assertIn("fetch_hits = true", (self.folder / "bench/SHIP_SH/config.toml").read_text())
+        text = SMALL.format(title="x", setting="rt.warps=4", published=1).replace('against = "base"', 'against = "base"\noracle = ["perfect_prefetch"]')
+        self.lab(0, self.write("mine.toml", text), "--workloads", "SHIP_SH", "--oracle", "infinite_tests")
+        for arm, hits in (("base", "false"), ("other", "true")):
+            text = (self.folder / f"out/lab-mine/{arm}/SHIP_SH/config.toml").read_text()
+            self.assertIn(f"fetch_hits = {hits}", text)
+            self.assertIn("units = 4096", text)
+
+    def test_an_unknown_oracle_is_refused(self):
+        self.expect(2, ["perfect_prefetch"], "run", "SHIP_SH", "--oracle", "perfect_cache")
+        self.expect(2, ["there is no oracle 'ideal_memroy'", "did you mean 'ideal_memory'?"], "describe", "--set", "oracle=ideal_memroy")
+
+
 class Effects(LabTest):
     """The published effects keep their sign on a small set."""
 

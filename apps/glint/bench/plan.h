@@ -16,7 +16,7 @@ namespace glint::app {
 struct BenchOptions {
   std::vector<std::string> names;  // names for select_workloads(); none: lumibench
   std::string config = "mobile", mode = "timing", assets, out;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, oracles;  // KEY=VALUE, and as --oracle names them
   FrameOptions frame;
   uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors
   double memory = 0;                    // GB that all processes may take together; 0: what is available

@@ -7,6 +7,7 @@
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/options/oracles.h"
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/session.h"
 
@@ -34,6 +35,7 @@ void add_bench(Command app, Session& session) {
   command.add_option("--set", options->settings, "Override one key, such as core.warps=16; repeatable")
       .type_name("KEY=VALUE")
       .allow_extra_args(false);
+  add_oracle_option(command, options->oracles);
   command
       .add_option(
           "--mode", options->mode,
@@ -58,8 +60,12 @@ void add_bench(Command app, Session& session) {
       command, options->max_cycles,
       "Cycle at which each launch is ended early; its row of the summary is marked as partial, "
       "metrics.csv does not have it, and the exit code is 6 (default: no limit)");
-  command.callback(
-      [&session, options] { session.action = [&session, options] { return run_bench(session, *options); }; });
+  command.callback([&session, options] {
+    session.action = [&session, options] {
+      options->settings = with_oracles(options->oracles, options->settings);
+      return run_bench(session, *options);
+    };
+  });
 }
 
 }  // namespace glint::app

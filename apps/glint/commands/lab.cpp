@@ -11,6 +11,7 @@
 #include "apps/glint/lab/experiment.h"
 #include "apps/glint/lab/results.h"
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/oracles.h"
 #include "apps/glint/session.h"
 #include "report/files/run_directory.h"
 
@@ -19,7 +20,7 @@ namespace {
 
 struct LabOptions {
   std::string name, config, out, size;
-  std::vector<std::string> workloads, arms;
+  std::vector<std::string> workloads, arms, oracles;
   uint32_t processes = 0;
   bool check = false;
 };
@@ -92,7 +93,9 @@ BenchOptions bench_of(const Experiment& experiment, const LabArm& arm, const Lab
   BenchOptions out;
   out.names = arm.workloads;
   out.config = experiment.config;
-  out.settings = experiment.settings;
+  std::vector<std::string> oracles = options.oracles;
+  oracles.insert(oracles.end(), arm.oracles.begin(), arm.oracles.end());
+  out.settings = with_oracles(oracles, experiment.settings);
   out.settings.insert(out.settings.end(), arm.settings.begin(), arm.settings.end());
   out.out = folder + "/" + arm.name;
   out.frame.size = options.size.empty() ? experiment.size : options.size;
@@ -135,9 +138,9 @@ Exit run_lab(const Session& session, const LabOptions& options) {
                                  ? "out/lab-" + experiment.name
                                  : "out/lab-" + experiment.name + "-" + stem_of(options.config);
   for (const LabArm& arm : experiment.arms) {
-    print_output(
-        "\n{}: {}\n", arm.name,
-        arm.settings.empty() ? "the machine as it is" : fmt::format("{}", fmt::join(arm.settings, " ")));
+    const std::vector<std::string> changes = with_oracles(arm.oracles, arm.settings);
+    print_output("\n{}: {}\n", arm.name,
+                 changes.empty() ? "the machine as it is" : fmt::format("{}", fmt::join(changes, " ")));
     if (const Exit exit = run_bench(session, bench_of(experiment, arm, options, folder)); exit != Exit::Ok)
       return exit;
   }
@@ -167,6 +170,7 @@ void add_lab(Command app, Session& session) {
       .capture_default_str();
   command.add_option("--config", options->config,
                      "Preset or file of another machine for all arms (default: the experiment's)");
+  add_oracle_option(command, options->oracles);
   command.add_option("--workloads", options->workloads,
                      "Which of the experiment's workloads to run, named as for 'glint bench' (default: all)");
   command.add_option("--arms", options->arms, "Arms to run, with their baselines (default: all)");

@@ -1,10 +1,12 @@
-// Declares `glint list WHAT`: scenes, materials, shaders, workloads, configs, policies, ops, stats, metrics.
+// Declares `glint list WHAT`: scenes, materials, shaders, workloads, configs, policies, oracles, ops, stats,
+// metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/oracles.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
 #include "base/registry.h"
@@ -73,6 +75,12 @@ Rows policy_rows() {
   return rows;
 }
 
+Rows oracle_rows() {
+  Rows rows;
+  for (const auto& [name, doc] : oracle_list()) rows.push_back({name, doc});
+  return rows;
+}
+
 Rows op_rows() {
   Rows rows;
   for (const isa::OpRow& row : isa::op_table())
@@ -134,6 +142,7 @@ Exit list(const Session& session, const ListOptions& options) {
                     : what == "shaders"   ? shader_rows()
                     : what == "workloads" ? workload_rows()
                     : what == "configs"   ? config_rows(session.resources)
+                    : what == "oracles"   ? oracle_rows()
                     : what == "ops"       ? (tests ? test_rows() : op_rows())
                     : what == "metrics"   ? metric_rows()
                                           : policy_rows();
@@ -146,11 +155,12 @@ Exit list(const Session& session, const ListOptions& options) {
 void add_list(Command app, Session& session) {
   auto options = std::make_shared<ListOptions>();
   Command command = app.add_subcommand(
-      "list", "List scenes, materials, shaders, workloads, configs, policies, ops, stats or metrics");
+      "list",
+      "List scenes, materials, shaders, workloads, configs, policies, oracles, ops, stats or metrics");
   command.add_option("WHAT", options->what, "What to list")
       .required()
-      .one_of(
-          {"scenes", "materials", "shaders", "workloads", "configs", "policies", "ops", "stats", "metrics"});
+      .one_of({"scenes", "materials", "shaders", "workloads", "configs", "policies", "oracles", "ops",
+               "stats", "metrics"});
   command.add_option("SCENE", options->scene, "Scene or file whose materials to list (with materials)");
   command.add_option("--assets", options->assets, "Folder that has the original scene data (with materials)")
       .type_name("DIR")

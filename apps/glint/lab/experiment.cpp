@@ -49,6 +49,7 @@ class ExperimentReader {
     out.against = table.text("against");
     out.settings = table.texts("set");
     out.workloads = table.texts("workloads");
+    out.oracles = table.texts("oracle");
     if (const auto reach = table.optional_integer("ao_reach", 0, 100)) out.ao_reach = uint32_t(*reach);
     out.published = read_number(table, "published");
     out.expected = read_band(table, "expected");

@@ -28,6 +28,7 @@ struct LabArm {
   std::string name;
   std::string against;  // the arm whose cycles are divided by this one's; "" for a baseline
   std::vector<std::string> settings, workloads;  // no workloads: those of the experiment
+  std::vector<std::string> oracles;              // as --oracle names them
   std::optional<double> published;               // speed-up in the source: geometric mean
   std::optional<Band> expected;                  // of the geometric mean of the speed-ups
   std::optional<double> least;                   // no workload may have a smaller speed-up

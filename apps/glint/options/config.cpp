@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "apps/glint/options/oracles.h"
 #include "base/config.h"
 #include "base/diagnostics.h"
 #include "memsys/peak.h"
@@ -112,7 +113,7 @@ pipeline::GpuParams read_quietly(const Resources& resources, const std::string& 
                                  const std::vector<std::string>& settings) {
   Config config;
   for (const std::string& path : with_bases(resources, name_or_path)) config.add_file(path);
-  for (const std::string& setting : settings) config.add_setting(setting);
+  for (const std::string& setting : without_oracles(resources, settings)) config.add_setting(setting);
   Diagnostics diagnostics;
   ConfigTable root = config.root(diagnostics);
   if (root.has("base") && root.where("base").file.rfind("--set", 0) == 0)

@@ -11,8 +11,8 @@
 namespace glint::app {
 
 // Reads the preset or file first, on top of the one that its key `base` names, then applies the settings in
-// order. Throws UserError that lists everything that is wrong. Oddities of the resulting machine are warned
-// of on stderr.
+// order, of which "oracle=NAME" stands for several (oracles.h). Throws UserError that lists everything that
+// is wrong. Oddities of the resulting machine are warned of on stderr.
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings);
 

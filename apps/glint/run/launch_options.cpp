@@ -6,6 +6,7 @@
 
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/options/oracles.h"
 
 namespace glint::app {
 namespace {
@@ -17,6 +18,7 @@ void add_machine_options(Command command, LaunchOptions& options) {
   command.add_option("--set", options.settings, "Override one key, such as core.warps=16; repeatable")
       .type_name("KEY=VALUE")
       .allow_extra_args(false);
+  add_oracle_option(command, options.oracles);
   command
       .add_option(
           "--mode", options.mode,
@@ -85,6 +87,7 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   options.config_given = command.count("--config") > 0;
   options.mode_given = command.count("--mode") > 0;
   options.on_fault = options.on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
+  options.settings = with_oracles(options.oracles, options.settings);
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
 }
 

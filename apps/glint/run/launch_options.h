@@ -19,7 +19,8 @@ struct LaunchOptions {
   std::string mode = "timing";                    // "timing" or "functional"
   bool config_given = false, mode_given = false;  // set when the command line named them
   std::string out;                                // run directory; empty: the kind of launch chooses one
-  std::vector<std::string> settings;              // KEY=VALUE
+  std::vector<std::string> settings;              // KEY=VALUE; the oracles come first
+  std::vector<std::string> oracles;               // as --oracle names them
   uint64_t max_instructions = 0;                  // limit of a warp; 0: the limit of the configuration
   uint64_t max_cycles = 0;                        // limit of the launch; 0: none
   std::string stats = "full";                     // "full" or "compact"
