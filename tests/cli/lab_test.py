@@ -167,12 +167,35 @@ class Oracles(LabTest):
 class Effects(LabTest):
     """The published effects keep their sign on a small set."""
 
-    def test_the_prefetcher_and_the_helpers_speed_up_a_ship(self):
-        for name, arm in (("ttp26", "stack_trend"), ("coop25", "cooperative")):
-            with self.subTest(name=name):
-                self.lab(0, name, "--arms", arm, "--workloads", "SHIP_PT", "--size", "32x32", "--check")
-                speedup = next(float(row["speedup"]) for row in self.rows(f"out/lab-{name}") if row["arm"] == arm)
-                self.assertGreater(speedup, 1.05)
+    def speedups(self, name, arms, *workloads):
+        """Returns the speed-ups by arm and workload, after the check that no sign is flipped."""
+        self.lab(0, name, "--arms", *arms, "--workloads", *workloads, "--size", "32x32", "--check")
+        return {(row["arm"], row["workload"]): float(row["speedup"]) for row in self.rows(f"out/lab-{name}") if row["speedup"] and not row["figure"]}
+
+    def test_the_prefetcher_speeds_up_a_ship_and_no_scene_is_slower(self):
+        got = self.speedups("ttp26", ["stack_trend", "perfect-prefetch", "stack_trend-ao", "stack_trend-sh"], "SHIP_PT", "BUNNY_PT", "WKND_PT", "SHIP_AO", "SHIP_SH")
+        self.assertGreater(got["stack_trend", "SHIP_PT"], 1.2)
+        self.assertGreater(got["stack_trend", "SHIP_PT"], got["stack_trend-ao", "SHIP_AO"])
+        for workload in ("SHIP_PT", "BUNNY_PT", "WKND_PT"):
+            self.assertGreaterEqual(got["stack_trend", workload], 0.98)
+            self.assertGreaterEqual(got["perfect-prefetch", workload], got["stack_trend", workload])
+        figures = {row["figure"]: float(row["value"]) for row in self.rows("out/lab-ttp26") if row["figure"] and row["workload"] == "SHIP_PT"}
+        self.assertGreater(figures["accuracy in the L1"], 0.9)
+        self.assertAlmostEqual(figures["DRAM sectors read, ratio"], 1, delta=0.05)
+
+    def test_helpers_speed_up_paths_most_and_more_with_wider_groups(self):
+        got = self.speedups("coop25", ["cooperative", "subwarps-of-8", "subwarps-of-4", "cooperative-ao", "cooperative-sh"], "SHIP_PT", "WKND_PT", "SHIP_AO", "SHIP_SH")
+        self.assertGreater(got["cooperative", "SHIP_PT"], 1.3)
+        self.assertGreaterEqual(got["cooperative", "SHIP_PT"], got["subwarps-of-8", "SHIP_PT"])
+        self.assertGreater(got["subwarps-of-8", "SHIP_PT"], got["subwarps-of-4", "SHIP_PT"])
+        self.assertLess(got["cooperative", "WKND_PT"], got["cooperative", "SHIP_PT"])
+        for arm, workload in (("cooperative-ao", "SHIP_AO"), ("cooperative-sh", "SHIP_SH")):
+            self.assertLess(got[arm, workload], got["cooperative", "SHIP_PT"])
+
+    def test_perfect_prediction_has_room(self):
+        got = self.speedups("pred21", ["perfect-prediction"], "SHIP_AO", "SPNZA_AO")
+        self.assertGreater(got["perfect-prediction", "SPNZA_AO"], 1.3)
+        self.assertGreater(got["perfect-prediction", "SHIP_AO"], 1)
 
 
 if __name__ == "__main__":

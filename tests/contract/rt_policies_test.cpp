@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
 namespace {
@@ -21,7 +25,7 @@ struct Rays {
     for (size_t w = 0; w < warps.size(); ++w)
       for (size_t lane = 0; lane < kLanes; ++lane) {
         RayState state = ray_of(built.top.address, random.point(15), random.point(1));
-        state.ray.flags = std::array{0u, 4u, 5u, 0x100u}[random.below(4)];
+        state.ray.flags = std::array{0u, 4u, 5u, 0x100u, 0x201u, 0x205u}[random.below(6)];
         if (w == 0 && lane == 0) same = state;
         if (lane < 4) state.ray = same.ray;
         state.rules.end_at_first_hit = false;
@@ -40,11 +44,32 @@ bool same_hit(const Hit& a, const Hit& b) {
          a.geometry == b.geometry && a.primitive == b.primitive;
 }
 
+// Takes the next policy of a kind from a number, which has a digit for each kind.
+template <class Interface>
+std::string take(uint32_t& number) {
+  const std::vector<std::string> names = Registry<Interface>::names();
+  const std::string name = names[number % names.size()];
+  number /= uint32_t(names.size());
+  return name;
+}
+
+// Chooses the policies that go around a traversal, all combinations of them in turn. Those that do not go
+// together make way.
+void choose_around(uint32_t number, Params& p) {
+  p.prefetch.name = take<Prefetcher>(number);
+  p.mapping.name = take<WorkMapping>(number);
+  p.entry.name = take<RayEntry>(number);
+  p.pool.name = take<RayPool>(number);
+  p.oracle.any_lane = number % 2;
+  if (!RtUnit::why_not_together(p).empty()) p.pool.name = RayPool::kNone;
+  if (!RtUnit::why_not_together(p).empty()) p.mapping.name = WorkMapping::kOwnRay;
+  REQUIRE(RtUnit::why_not_together(p) == "");
+}
+
 // Returns every policy that a traversal may depend on, and the limits beside it.
 std::vector<Params> combinations() {
   std::vector<Params> out;
   uint32_t number = 0;
-  const std::vector<std::string> prefetchers = Registry<Prefetcher>::names();
   for (const std::string& order : Registry<ChildOrder>::names())
     for (const std::string& coalescing : Registry<Coalescer>::names())
       for (const std::string& stack : Registry<StackModel>::names())
@@ -56,7 +81,7 @@ std::vector<Params> combinations() {
               p.coalescing.name = coalescing;
               p.stack.name = stack;
               p.scheduler.name = scheduler;
-              p.prefetch.name = prefetchers[number % prefetchers.size()];
+              choose_around(number, p);
               p.retest = retest;
               p.mshr_entries = entries;
               p.result_store = number++ % 2;
@@ -66,11 +91,34 @@ std::vector<Params> combinations() {
   return out;
 }
 
+TEST_CASE("every two policies that go together are tried together") {
+  const auto names = [](const Params& p) {
+    return std::array{p.prefetch.name, p.mapping.name, p.entry.name, p.pool.name};
+  };
+  std::set<std::pair<std::string, std::string>> tried;
+  for (const Params& p : combinations())
+    for (const std::string& a : names(p))
+      for (const std::string& b : names(p)) tried.emplace(a, b);
+  for (const std::string& prefetch : Registry<Prefetcher>::names())
+    for (const std::string& mapping : Registry<WorkMapping>::names())
+      for (const std::string& entry : Registry<RayEntry>::names())
+        for (const std::string& pool : Registry<RayPool>::names()) {
+          Params p;
+          p.prefetch.name = prefetch, p.mapping.name = mapping, p.entry.name = entry, p.pool.name = pool;
+          if (!RtUnit::why_not_together(p).empty()) continue;
+          for (const std::string& a : names(p))
+            for (const std::string& b : names(p)) {
+              CAPTURE(a, b);
+              CHECK(tried.contains({a, b}));
+            }
+        }
+}
+
 TEST_CASE(
     "with every combination of policies each ray finds the same hit, and skipping to events changes no "
     "cycle") {
   uint64_t hits = 0, combination = 0, spills = 0, restarts = 0, across = 0, stale = 0, full = 0,
-           prefetches = 0;
+           prefetches = 0, predicted = 0, moves = 0, formed = 0;
   std::vector<std::unique_ptr<BuiltScene>> built;
   std::vector<Scene> scenes;
   for (const std::string& format : Registry<NodeFormat>::names()) {
@@ -79,18 +127,25 @@ TEST_CASE(
   }
   for (const Params& params : combinations()) {
     const BuiltScene& scene = *built[combination % built.size()];
-    const bool gather = combination / 4 % 2;
+    const bool gather = combination / 4 % 2 && params.pool.name == RayPool::kNone;
     ++combination;
     CAPTURE(params.child_order.name, params.coalescing.name, params.stack.name, params.scheduler.name,
-            params.prefetch.name, params.retest, params.mshr_entries, gather);
+            params.prefetch.name, params.mapping.name, params.entry.name, params.pool.name,
+            params.oracle.any_lane, params.retest, params.mshr_entries, gather);
     Rays expected(combination, scene, false), ticked(combination, scene, gather),
         skipped(combination, scene, gather);
     mem::FixedLatencyMemory l1_ticked(20, 2), l1_skipped(20, 2);
-    const RtUnit::Context context{
-        scene.memory,    l1_ticked, nullptr, Address{1} << 30, {Address{1} << 31, gather ? 3u : 0u},
-        Address{1} << 32};
-    RtUnit::Context other{scene.memory, l1_skipped, nullptr, context.results, context.tables, context.stacks};
-    RtUnit all(params, context), some(params, other);
+    stats::Group root_ticked(nullptr, "ticked"), root_skipped(nullptr, "skipped");
+    const auto context = [&](mem::FixedLatencyMemory& l1, stats::Group& root) {
+      return RtUnit::Context{scene.memory,
+                             l1,
+                             &root,
+                             Address{1} << 30,
+                             {Address{1} << 31, gather ? 3u : 0u},
+                             Address{1} << 32,
+                             Address{1} << 33};
+    };
+    RtUnit all(params, context(l1_ticked, root_ticked)), some(params, context(l1_skipped, root_skipped));
     const Launch a = launch(all, l1_ticked, ticked.warps, true),
                  b = launch(some, l1_skipped, skipped.warps, false);
     REQUIRE(a.completion == b.completion);
@@ -112,11 +167,17 @@ TEST_CASE(
     stale += s.stale_nodes.value();
     full += s.cycles.count(Stall::MshrFull);
     prefetches += s.cycles.count(Stall::Prefetch);
+    const std::string listed = glint::test::listing(root_ticked);
+    predicted += glint::test::counter_in(listed, "predicted");
+    moves += glint::test::counter_in(listed, "moves");
+    formed += params.pool.name != RayPool::kNone;
   }
   CHECK(combination == combinations().size());
   CHECK(hits > 10000);
   // Each mechanism must have been at work.
-  for (const uint64_t count : {spills, restarts, across, stale, full, prefetches}) CHECK(count > 100);
+  for (const uint64_t count : {spills, restarts, across, stale, full, prefetches, predicted, moves})
+    CHECK(count > 100);
+  CHECK(formed > 10);
 }
 
 }  // namespace

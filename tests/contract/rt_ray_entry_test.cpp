@@ -71,12 +71,8 @@ struct Outcome {
   std::vector<WarpRays> rays;
 };
 
-// Returns the first counter of this name in the outcome's listing, or 0.
 uint64_t count(const Outcome& outcome, const std::string& name) {
-  for (size_t at = 0; (at = outcome.stats.find(name + "=", at)) != std::string::npos; ++at)
-    if (outcome.stats[at - 1] == '\n' || outcome.stats[at - 1] == '{')
-      return std::stoull(outcome.stats.substr(at + name.size() + 1));
-  return 0;
+  return glint::test::counter_in(outcome.stats, name);
 }
 
 // Makes warps of rays that come from few places in few directions.

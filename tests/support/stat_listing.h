@@ -1,6 +1,8 @@
 // Lists all statistics of a machine as text, and finds where two listings differ.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <fmt/format.h>
 #include <sstream>
 #include <string>
@@ -43,6 +45,14 @@ inline std::string listing(const stats::Group& root) {
   Listing listing;
   root.accept(listing);
   return listing.text;
+}
+
+// Returns the first counter of this name in a listing, or 0.
+inline uint64_t counter_in(const std::string& listed, const std::string& name) {
+  for (size_t at = 0; (at = listed.find(name + "=", at)) != std::string::npos; ++at)
+    if (at == 0 || listed[at - 1] == '\n' || listed[at - 1] == '{')
+      return std::stoull(listed.substr(at + name.size() + 1));
+  return 0;
 }
 
 }  // namespace glint::test
