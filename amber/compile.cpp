@@ -159,10 +159,11 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
   Diagnostics notes;
   out.name = shader.name;
   out.reflection = frontend::reflect(words, title);
-  out.program = frontend::compile_module(words, title, attachment.entry,
-                                         {compiler.max_registers, compiler.schedule, compiler.contract,
-                                          compiler.queries_call, compiler.guard_latency},
-                                         notes, cache, validity)
+  out.program = frontend::compile_module(
+                    words, title, attachment.entry,
+                    {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call,
+                     compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces},
+                    notes, cache, validity)
                     .program;
   if (out.program.stage != *attachment.stage)
     throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' has another stage",

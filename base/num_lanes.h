@@ -1,4 +1,5 @@
-// Counts the lanes of a mask without needing an instruction that not every machine has.
+// Works on masks of lanes: counts them without needing an instruction that not every machine has, and lets
+// lanes of two masks change places.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -16,5 +17,12 @@ constexpr uint32_t num_lanes(LaneMask mask) {
   return mask * 0x0101'0101u >> 24;
 }
 static_assert(num_lanes(kAllLanes) == kLanes && num_lanes(0x8000'0001u) == 2 && num_lanes(0) == 0);
+
+// Lets bit `i` of `a` and bit `j` of `b` change places.
+constexpr void swap_bits(LaneMask& a, int i, LaneMask& b, int j) {
+  const LaneMask differ = (a >> i ^ b >> j) & 1;
+  a ^= differ << i;
+  b ^= differ << j;
+}
 
 }  // namespace glint

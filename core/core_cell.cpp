@@ -33,7 +33,8 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       constants_(parts(), code_ ? code_->constants() : nullptr),
       rays_(parts(), context.rt),
       barriers_(parts()),
-      issue_(parts(), {memory_, constants_, rays_, barriers_}, doors_),
+      reorder_(ReorderUnit::make(parts(), memory_)),
+      issue_(parts(), {memory_, constants_, rays_, barriers_, reorder_.get()}, doors_),
       seat_{0, warps_.size(), context.index, context.cores} {
   executor_.use(view_.get());
 }
@@ -113,6 +114,7 @@ Cycle CoreCell::next_event(Cycle from) const {
   if (next <= from) return from;
   if (from == 0) return finished() ? next : from;
   if (code_) next = std::min(next, code_->next_event(from - 1));
+  if (reorder_) next = std::min(next, reorder_->next_event(from - 1));
   next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1)});
   return std::max(next, from);
 }
@@ -131,6 +133,7 @@ void CoreCell::step(Cycle now) {
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);
   rays_.take_answers(now);
+  if (reorder_) reorder_->tick(now);
   issue(now);
   active_until_ = now + 1;
   if (warps_.num_resident() != residents_) [[unlikely]] {

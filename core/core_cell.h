@@ -18,6 +18,7 @@
 #include "core/memory_accesses.h"
 #include "core/params.h"
 #include "core/ray_door.h"
+#include "core/reorder_unit.h"
 #include "core/warp_slots.h"
 #include "engine/engine.h"
 #include "exec/executor.h"
@@ -158,6 +159,7 @@ class CoreCell final : public Cell {
   ConstantPort constants_;
   RayDoor rays_;
   BarrierUnit barriers_;
+  const std::unique_ptr<ReorderUnit> reorder_;  // null when threads stay in their lanes
   IssueStage issue_;
   exec::Seat seat_;         // the seat of the warp launched last
   Cycle block_start_ = 0;   // when the first instructions of the block launched last can issue

@@ -33,6 +33,10 @@ class CoreObserver {
   // Tell that the rays of these lanes travel from now on (start_rays) or have stopped (end_rays).
   virtual void start_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
   virtual void end_rays(uint32_t /*slot*/, LaneMask, const rt::RayState*) {}
+  // Tells that the threads of these lanes have changed places (core.reorder), before either warp issues
+  // again.
+  virtual void swap_threads(Cycle /*now*/, uint32_t /*slot_a*/, int /*lane_a*/, uint32_t /*slot_b*/,
+                            int /*lane_b*/) {}
   // Tells that the warp has freed its slot: cycle `now` is no longer its own.
   virtual void end_warp(Cycle /*now*/, uint32_t /*slot*/) {}
 };

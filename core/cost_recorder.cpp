@@ -3,6 +3,8 @@
 #include "core/cost_recorder.h"
 
 #include <fmt/format.h>
+#include <numeric>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "base/num_lanes.h"
@@ -25,14 +27,20 @@ LaunchCosts::LaunchCosts(const exec::World& world) : world_(world), threads_(num
 
 void CostRecorder::start_warp(Cycle, uint32_t slot, const exec::WarpContext& warp) {
   slots_[slot] = {};
-  slots_[slot].warp_index = warp.warp_index;
+  slots_[slot].warp_index.fill(warp.warp_index);
+  std::iota(slots_[slot].first_lane.begin(), slots_[slot].first_lane.end(), uint8_t{0});
+}
+
+// Charges the cycles since the last instruction to the threads that executed it.
+void CostRecorder::charge_until(Cycle now, Slot& warp) {
+  for_each_lane(warp.last,
+                [&](int lane) { warp.lane[size_t(lane)].active_cycles += uint32_t(now - warp.last_issue); });
+  warp.last_issue = now;
 }
 
 void CostRecorder::issue(Cycle now, uint32_t slot, const exec::Issued& issued) {
   Slot& warp = slots_[slot];
-  for_each_lane(warp.last,
-                [&](int lane) { warp.lane[size_t(lane)].active_cycles += uint32_t(now - warp.last_issue); });
-  warp.last_issue = now;
+  charge_until(now, warp);
   warp.last = issued.lanes;
   for_each_lane(issued.lanes & ~warp.started, [&](int lane) { warp.first[size_t(lane)] = now; });
   warp.started |= issued.lanes;
@@ -79,12 +87,28 @@ void CostRecorder::miss(uint32_t slot, LaneMask lanes, int of) {
   for_each_lane(lanes, [&](int lane) { slots_[slot].lane[size_t(lane)].l1_misses += share; });
 }
 
+void CostRecorder::swap_threads(Cycle now, uint32_t slot_a, int lane_a, uint32_t slot_b, int lane_b) {
+  Slot &a = slots_[slot_a], &b = slots_[slot_b];
+  const auto i = size_t(lane_a), j = size_t(lane_b);
+  charge_until(now, a);
+  charge_until(now, b);
+  std::swap(a.warp_index[i], b.warp_index[j]);
+  std::swap(a.first_lane[i], b.first_lane[j]);
+  std::swap(a.first[i], b.first[j]);
+  std::swap(a.end[i], b.end[j]);
+  std::swap(a.nodes[i], b.nodes[j]);
+  std::swap(a.triangle_tests[i], b.triangle_tests[j]);
+  std::swap(a.lane[i], b.lane[j]);
+  for (const auto mask : {&Slot::present, &Slot::started, &Slot::last})
+    swap_bits(a.*mask, lane_a, b.*mask, lane_b);
+}
+
 void CostRecorder::end_warp(Cycle, uint32_t slot) {
   Slot& warp = slots_[slot];
   for_each_lane(warp.present, [&](int lane) {
     ThreadCost& cost = warp.lane[size_t(lane)];
     cost.cycles = uint32_t(warp.end[size_t(lane)] - warp.first[size_t(lane)]);
-    costs_.at(launch_id(costs_.world(), warp.warp_index, lane)) = cost;
+    costs_.at(launch_id(costs_.world(), warp.warp_index[size_t(lane)], warp.first_lane[size_t(lane)])) = cost;
   });
 }
 

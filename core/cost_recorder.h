@@ -61,13 +61,16 @@ class CostRecorder final : public CoreObserver {
   void call(uint32_t slot, isa::Stage stage, LaneMask lanes) override;
   void start_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) override;
   void end_rays(uint32_t slot, LaneMask lanes, const rt::RayState* states) override;
+  void swap_threads(Cycle now, uint32_t slot_a, int lane_a, uint32_t slot_b, int lane_b) override;
   void end_warp(Cycle now, uint32_t slot) override;
   // Charges a read of the L1 that missed to `lanes`. `of` lanes in all wait for it, these among them.
   void miss(uint32_t slot, LaneMask lanes, int of);
 
  private:
   struct Slot {
-    uint32_t warp_index = 0;
+    // These say who is in each lane: the warp and the lane in which the thread began.
+    std::array<uint32_t, kLanes> warp_index{};
+    std::array<uint8_t, kLanes> first_lane{};
     // These are the lanes that came to an instruction, those that have executed one, and those that executed
     // the last one.
     LaneMask present = 0, started = 0, last = 0;
@@ -76,6 +79,7 @@ class CostRecorder final : public CoreObserver {
     std::array<uint32_t, kLanes> nodes{}, triangle_tests{};  // counts at the start of the rays under way
     std::array<ThreadCost, kLanes> lane;
   };
+  static void charge_until(Cycle now, Slot& warp);
 
   LaunchCosts& costs_;
   std::vector<Slot> slots_;

@@ -9,6 +9,7 @@
 #include "core/constant_port.h"
 #include "core/memory_accesses.h"
 #include "core/ray_door.h"
+#include "core/reorder_unit.h"
 
 namespace glint::core {
 
@@ -97,6 +98,14 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
       units_.barriers.come(slot, now, row.latency);
       core_.counts.end(issued.pc, row.latency);
       break;
+    case Finish::Reorder:
+      if (units_.reorder && issued.lanes) {
+        units_.reorder->come(slot, issued, now);
+      } else {
+        at.front = {done, row.wait};
+        core_.counts.end(issued.pc, late + row.latency);
+      }
+      break;
     case Finish::Fence:
       units_.memory.start_fence(slot, row, issued, now);
       core_.counts.end(issued.pc, row.latency);
@@ -133,7 +142,7 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
   if (at.warp.instructions > core_.params.instruction_budget)
     fault_ = no_end_in_sight(core_.world, at.warp, issued.pc, core_.params.instruction_budget);
   else if (issued.finished)
-    retire(slot, now);
+    units_.memory.retire(slot, now);
   else
     prepare_next(at, now);
 }
@@ -147,13 +156,6 @@ void IssueStage::run(Scheduler& scheduler, Cycle now) {
     return;
   }
   issue(slot_of(scheduler, scheduler.pick(ready, now)), now);
-}
-
-void IssueStage::retire(uint32_t slot, Cycle now) {
-  if (units_.memory.in_flight(slot) == 0)
-    core_.warps.free(slot, now);
-  else
-    core_.warps.drain(slot);
 }
 
 // Tells observers of a selected warp. Model: a warp that is ready to go through a door counts as waiting for

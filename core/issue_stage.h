@@ -12,6 +12,7 @@ class BarrierUnit;
 class ConstantPort;
 class MemoryAccesses;
 class RayDoor;
+class ReorderUnit;
 
 class IssueStage {
  public:
@@ -20,6 +21,7 @@ class IssueStage {
     ConstantPort& constants;
     RayDoor& rays;
     BarrierUnit& barriers;
+    ReorderUnit* reorder;  // null: threads stay in their lanes
   };
   IssueStage(const CoreParts& core, const Units& units, const Doors& doors)
       : core_(core), units_(units), doors_(doors) {}
@@ -37,7 +39,6 @@ class IssueStage {
   void start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now);
   void prepare_next(WarpSlot& at, Cycle now);
   void issue_rest(uint32_t slot, Cycle now);
-  void retire(uint32_t slot, Cycle now);
   void tell_select(uint32_t slot, Cycle now) const;
   uint32_t blamed_pc(const Scheduler& scheduler, Cycle now) const;
   uint32_t slot_of(const Scheduler& scheduler, uint32_t local) const {

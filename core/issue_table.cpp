@@ -63,7 +63,7 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
     return Stall::Texture;  // Stores have no dependents.
   }
   if (finish == Finish::Rays) return Stall::RtWait;
-  if (finish == Finish::Barrier) return Stall::Barrier;
+  if (finish == Finish::Barrier || finish == Finish::Reorder) return Stall::Barrier;
   if (finish == Finish::Fence) return Stall::Fence;
   if (finish == Finish::Control) return Stall::Branch;
   if (finish == Finish::CallRecord) return Stall::Call;

@@ -38,6 +38,13 @@ class MemoryAccesses {
 
   // Returns the accesses of the slot's warp between issue and completion.
   uint32_t in_flight(uint32_t slot) const { return pending_[slot].accesses; }
+  // Frees the slot of a warp that has ended, now or when the last of its accesses has completed.
+  void retire(uint32_t slot, Cycle now) {
+    if (in_flight(slot) == 0)
+      core_.warps.free(slot, now);
+    else
+      core_.warps.drain(slot);
+  }
   // Returns the lanes of access `access`, the token of its requests, that touch a line. `slot` becomes the
   // slot of their warp.
   LaneMask readers_of(mem::Token access, Address line, uint32_t& slot) const;

@@ -14,6 +14,7 @@
 #include "core/code_params.h"
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
+#include "core/reorder.h"
 #include "exec/warp_layout.h"
 #include "isa/op_row.h"
 
@@ -258,6 +259,8 @@ struct Params {
   uint32_t shared_bytes = 65536;  // Turing: up to 64 KiB of the 96 KiB that it shares with the L1
   PolicyChoice<IssueScheduler> issue{"gto"};
   PolicyChoice<OpTimes> op_times{"by_unit"};
+  PolicyChoice<Reorder> reorder{"none"};
+  ReorderParams reordering;
   Units units;
   // An H200 has a crossing of 1 cycle: a result takes 4 cycles within a pipe and 5 to another, or 17 and 18
   // from the special-function unit. It has a guard delay of 9 cycles: a comparison's result selects after 4
@@ -305,6 +308,9 @@ struct Params {
         policy(&Params::issue, "issue", "Selects the ready warp that a scheduler issues from."),
         policy(&Params::op_times, "op_times",
                "Selects the times of single ops, which may differ from those of their unit."),
+        policy(&Params::reorder, "reorder",
+               "Selects where threads of a core's warps are regrouped, and what they are sorted by."),
+        section(&Params::reordering, "reordering", "Parameters of the regrouping of threads."),
         section(&Params::units, "units", "Latencies and initiation intervals of the execution units."),
         param(&Params::pipe_crossing, "pipe_crossing", "cycle",
               "Extra cycles before an instruction on another pipe can read a result.", 0, 100),

@@ -29,12 +29,12 @@ enum class Stall : uint8_t {
   Texture,         // The result of a texture or image load is missing.
   LongScoreboard,  // The result of a load from global memory is missing, whichever level answers.
   Call,            // The record of the shader binding table is missing.
-  Barrier,         // Other warps of the block have not come to the barrier.
-  Fence,           // Those that the fence asks for have not seen the warp's earlier accesses yet.
-  RtWait,          // The warp is in the RT unit.
-  Dispatch,        // The warp is being launched.
-  Drain,           // The warp has ended, but its last accesses have not.
-  NoWarp,          // No warp is resident.
+  Barrier,   // Other warps have not come to the barrier of the block, or to where threads are regrouped.
+  Fence,     // Those that the fence asks for have not seen the warp's earlier accesses yet.
+  RtWait,    // The warp is in the RT unit.
+  Dispatch,  // The warp is being launched.
+  Drain,     // The warp has ended, but its last accesses have not.
+  NoWarp,    // No warp is resident.
   Count
 };
 

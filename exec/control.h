@@ -14,6 +14,8 @@ class Control {
 
   // Returns false after a fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
+  // Lets lanes that wait go on when none of the warp's lanes runs.
+  void resume_if_empty(WarpContext& warp);
 
  private:
   bool branch(WarpContext& warp, uint32_t target);
@@ -21,7 +23,6 @@ class Control {
   bool call_function(WarpContext& warp, uint32_t target);
   bool return_from(WarpContext& warp, isa::Effect effect);
   void leave(WarpContext& warp, LaneMask lanes);
-  void resume_if_empty(WarpContext& warp);
 
   const World& world_;
   FaultGate& faults_;

@@ -127,7 +127,7 @@ Fault EndlessLoops::fault(const World& world, const WarpContext& warp) const {
   const int lane = warp.simt.active ? std::countr_zero(warp.simt.active) : 0;
   return {fmt::format("no end in sight: nothing leads out of {}, which the warp has entered",
                       span_text(image, endless.first, endless.second)),
-          image.place_of(endless.first), shader_launch_id(world, warp.warp_index, lane)};
+          image.place_of(endless.first), shader_thread_id(warp, lane)};
 }
 
 std::string loops_around(const Image& image, uint32_t pc) {

@@ -28,6 +28,7 @@ Executor::Executor(const World& world, double clock_mhz)
       rays_(world, faults_, ray_faults_, candidates_),
       queries_(world, faults_, ray_faults_),
       hit_objects_(world, faults_, ray_faults_, rays_),
+      reorder_calls_(world, faults_),
       traversal_(world, rays_, calls_),
       control_(world, faults_, calls_, traversal_),
       barriers_(world, faults_) {
@@ -66,6 +67,14 @@ void Executor::execute_effect(WarpContext& warp, Issued& issued, Cycle now) {
   }
 }
 
+bool Executor::resume(WarpContext& warp) {
+  control_.resume_if_empty(warp);
+  if (!warp.simt.finished()) return false;
+  // Such a warp is a block of its own, so no barrier is left without it.
+  barriers_.end_warp(warp);
+  return true;
+}
+
 bool Executor::dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
   if (isa::needs_trace(row.effect) && !is_in_trace(warp, row)) return false;
   switch (isa::effect_row(row.effect).family) {
@@ -86,6 +95,8 @@ bool Executor::dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpR
       return queries_.run(warp, inst, row);
     case EffectFamily::HitObject:
       return hit_objects_.run(warp, inst, row);
+    case EffectFamily::Reorder:
+      return reorder_calls_.run(warp, inst, row);
     case EffectFamily::Barrier:
       return barriers_.run(warp, inst, row);
     case EffectFamily::Print:

@@ -18,6 +18,7 @@
 #include "exec/ray_faults.h"
 #include "exec/ray_queries.h"
 #include "exec/rays.h"
+#include "exec/reorder_calls.h"
 #include "exec/seen_memory.h"
 #include "exec/shader_calls.h"
 #include "exec/warp_context.h"
@@ -103,6 +104,12 @@ class Executor {
   // Writes the answer predicate of the rays that the warp waits for.
   void finish_rays(WarpContext& warp) const { rays_.finish(warp); }
 
+  // Goes on with lanes that wait when the machine has moved the last running thread out of the warp. Returns
+  // whether the warp has ended, because it has no more threads.
+  bool resume(WarpContext& warp);
+  // Returns what lanes said in the last *.reorder.
+  const ReorderCalls& reorder_calls() const { return reorder_calls_; }
+
   // Returns the fault of an execute(). The warp is left as it was before the instruction.
   const std::optional<Fault>& fault() const { return faults_.fault(); }
   // Returns what went wrong and was let pass, because World::on_fault says so.
@@ -150,6 +157,7 @@ class Executor {
   Rays rays_;
   RayQueries queries_;
   HitObjects hit_objects_;
+  ReorderCalls reorder_calls_;
   CodeTraversal traversal_;
   Control control_;
   Barriers barriers_;

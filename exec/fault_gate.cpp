@@ -17,12 +17,11 @@ Fault no_end_in_sight(const World& world, const WarpContext& warp, uint32_t pc, 
   return {fmt::format("no end in sight: the warp has executed more than {} instructions, and "
                       "--max-instructions allows more{}{}",
                       instruction_budget, loops.empty() ? "" : "; the warp is ", loops),
-          world.image->place_of(pc), shader_launch_id(world, warp.warp_index, lane)};
+          world.image->place_of(pc), shader_thread_id(warp, lane)};
 }
 
 bool FaultGate::fail(const WarpContext& warp, int lane, std::string what) {
-  return fail({std::move(what), world_.image->place_of(warp.simt.pc),
-               shader_launch_id(world_, warp.warp_index, lane)});
+  return fail({std::move(what), world_.image->place_of(warp.simt.pc), shader_thread_id(warp, lane)});
 }
 
 bool FaultGate::fail(Fault fault) {
@@ -33,11 +32,10 @@ bool FaultGate::fail(Fault fault) {
 bool FaultGate::let_pass(const WarpContext& warp, int lane, FaultKind kind,
                          const std::function<std::string()>& what) {
   if (world_.on_fault == OnFault::Stop) return fail(warp, lane, what());
-  const std::array<uint32_t, 3> id = launch_id(world_, warp.warp_index, lane), &size = world_.launch_size;
+  const std::array<uint32_t, 3> id = thread_id(world_, warp, lane), &size = world_.launch_size;
   const uint64_t index = id[0] + uint64_t{size[0]} * (id[1] + uint64_t{size[1]} * id[2]);
   passed_.note(warp.simt.pc, kind, index, [&] {
-    return Fault{what(), world_.image->place_of(warp.simt.pc),
-                 shader_launch_id(world_, warp.warp_index, lane)};
+    return Fault{what(), world_.image->place_of(warp.simt.pc), shader_thread_id(warp, lane)};
   });
   return true;
 }

@@ -138,6 +138,19 @@ std::array<uint32_t, 3> shader_launch_id(const World& world, uint32_t warp_index
   return id;
 }
 
+std::array<uint32_t, 3> thread_id(const World& world, const WarpContext& warp, int lane) {
+  std::array<uint32_t, 3> id = shader_thread_id(warp, lane);
+  for (size_t axis = 0; axis < 3; ++axis) id[axis] -= world.first_id[axis];
+  return id;
+}
+
+std::array<uint32_t, 3> shader_thread_id(const WarpContext& warp, int lane) {
+  std::array<uint32_t, 3> id;
+  for (size_t axis = 0; axis < 3; ++axis)
+    id[axis] = warp.regs.bank[2][(size_t(Special::LaunchX) + axis) * kLanes + size_t(lane)];
+  return id;
+}
+
 uint32_t num_blocks(const World& world) {
   if (has_blocks(world)) return uint32_t(product(grid_size(world)));
   if (const Tiles tiles = tiles_of(world); tiles.width)

@@ -23,6 +23,9 @@ uint32_t warps_per_block(const World& world);  // 1 in a launch without blocks
 std::array<uint32_t, 3> launch_id(const World& world, uint32_t warp_index, int lane);
 // Returns the same as the shader reads it, which differs where the launch is a window of a larger one.
 std::array<uint32_t, 3> shader_launch_id(const World& world, uint32_t warp_index, int lane);
+// Return the same for the thread that is in a lane of a warp now. A core may have moved it there.
+std::array<uint32_t, 3> thread_id(const World& world, const WarpContext& warp, int lane);
+std::array<uint32_t, 3> shader_thread_id(const WarpContext& warp, int lane);
 
 // Empties `block` for block `index` of the launch: shared memory is zeroed, and no warp has arrived anywhere.
 // Blocks are numbered x fastest, unless the layout says otherwise.

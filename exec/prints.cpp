@@ -15,7 +15,7 @@ void run_print(const World& world, WarpContext& warp, const isa::Inst& inst, con
   const isa::ParsedMessage& message =
       world.image->shaders[world.image->shader_of[pc]].messages[warp.regs.read(inst.operand[0])[0]];
   for_each_lane(warp.regs.exec, [&](int lane) {
-    const auto id = launch_id(world, warp.warp_index, lane);
+    const auto id = thread_id(world, warp, lane);
     const uint64_t thread = (uint64_t{id[2]} * world.launch_size[1] + id[1]) * world.launch_size[0] + id[0];
     if (!world.prints->wants(thread)) return world.prints->add(thread, "", ends);
     uint32_t words[isa::kMessageWords];

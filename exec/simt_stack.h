@@ -104,6 +104,8 @@ class SimtStack {
 
   size_t depth() const { return entries_.size(); }
   const std::vector<Entry>& entries() const { return entries_; }
+  // Returns the lanes of entry `index`, for who moves threads to lanes of other warps.
+  LaneMask& lanes_at(size_t index) { return entries_[index].lanes; }
 
  private:
   std::vector<Entry> entries_;  // It grows once to the program's nesting, then allocates nothing.

@@ -32,6 +32,9 @@ struct BackendOptions {
   // These are the extra cycles that the scheduler assumes before a predicate can guard an instruction. With
   // more of them it places the comparisons for branches earlier.
   uint32_t guard_latency = 0;
+  // These emit an instruction where a core may regroup lanes: at the shader's own calls, and before the hit
+  // shaders of each trace. Without them a shader's call of reorderThread is nothing.
+  bool reorder_calls = false, reorder_traces = false;
 };
 
 // Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp, each also

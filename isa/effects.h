@@ -46,6 +46,7 @@ enum class Effect : uint8_t {
   Query,         // rq.*: OpRow::detail says which (isa/ray_query.h)
   QueryProceed,  // rq.proceed: gives rays to the RT unit
   HitObject,     // ho.*: OpRow::detail says which (isa/hit_object.h)
+  Reorder,       // *.reorder: a core may regroup lanes here; OpRow::detail says which (isa/hit_object.h)
   Barrier,       // bar.*: warps of a block wait for each other; OpRow::detail is the kind (isa/barrier.h)
   // print and print.part print a message of Program::messages with its words.
   Print,
@@ -64,6 +65,7 @@ enum class EffectFamily : uint8_t {
   Trace,
   Query,
   HitObject,
+  Reorder,
   Barrier,
   Print
 };
@@ -77,6 +79,7 @@ enum class Finish : uint8_t {
   CallRecord,  // what ends Control, and then the read of the record of the binding table
   Barrier,     // the other warps have come; a bar.arrive ends as Control does
   Fence,       // the warp's earlier accesses are done, and then a fixed time has passed
+  Reorder,     // what ends Control, or what a core that regroups lanes says
 };
 
 // Says where the lanes go that execute the instruction.
@@ -244,6 +247,10 @@ inline constexpr EffectRow kEffects[] = {
     {.effect = Effect::QueryProceed, .family = EffectFamily::Query, .finish = Finish::Rays},
     // Each op has its own stages (isa/hit_object.h).
     {.effect = Effect::HitObject, .family = EffectFamily::HitObject},
+    {.effect = Effect::Reorder,
+     .family = EffectFamily::Reorder,
+     .finish = Finish::Reorder,
+     .takes_guard = false},
     {.effect = Effect::Barrier,
      .family = EffectFamily::Barrier,
      .finish = Finish::Barrier,

@@ -18,13 +18,18 @@ enum class HitObjectOp : uint16_t {
   Attributes,
   SetTime,
   GetTime,
-  Corner
+  Corner,
+  // These are of Effect::Reorder.
+  Reorder,
+  ReorderByHint,
+  ReorderByTrace
 };
 
 // Returns the stages whose shaders may contain the op.
 constexpr StageSet stages_of(HitObjectOp op) {
   if (op == HitObjectOp::GetTime) return {Stage::Intersection, Stage::AnyHit, Stage::ClosestHit, Stage::Miss};
   if (op == HitObjectOp::Corner) return {Stage::AnyHit, Stage::ClosestHit};
+  if (op == HitObjectOp::Reorder || op == HitObjectOp::ReorderByHint) return {Stage::RayGeneration};
   return {Stage::RayGeneration, Stage::ClosestHit, Stage::Miss};
 }
 

@@ -43,6 +43,7 @@ constexpr EffectTest kTests[] = {
     {Effect::Query, "tests/ops/ray_query.cpp"},
     {Effect::QueryProceed, "tests/ops/ray_query.cpp"},
     {Effect::HitObject, "tests/ops/hit_object.cpp"},
+    {Effect::Reorder, "tests/ops/hit_object.cpp"},
     {Effect::Barrier, "tests/ops/control.cpp"},
     {Effect::Print, "tests/ops/control.cpp"},
     {Effect::PrintPart, "tests/ops/control.cpp"},

@@ -93,7 +93,8 @@ class Verifier {
   // Checks that the op means something in the program's stage.
   void stage_of_op() {
     only(effect_row(row_->effect).stages);
-    if (row_->effect == Effect::HitObject) only(stages_of(HitObjectOp(row_->detail)));
+    if (row_->effect == Effect::HitObject || row_->effect == Effect::Reorder)
+      only(stages_of(HitObjectOp(row_->detail)));
     if (row_->memory.space == Space::Shared) only({Stage::Compute});
   }
   void only(StageSet stages) {

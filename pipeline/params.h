@@ -20,7 +20,8 @@ struct CompilerParams {
   bool schedule = true;
   bool contract = false;
   uint32_t guard_latency = 0;
-  bool queries_call = false;  // It has no key, because it follows from GpuParams::rt.unit.
+  // These have no keys. The first follows from GpuParams::rt.unit, and the others from core.reorder.
+  bool queries_call = false, reorder_calls = false, reorder_traces = false;
   static ParamList params() {
     return {
         param(&CompilerParams::max_registers, "max_registers", "register",

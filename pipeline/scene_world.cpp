@@ -98,9 +98,10 @@ WorkloadShaders compile_workload(const RenderJob& job) {
     glsl.specialization[kOcclusionReach] = std::bit_cast<uint32_t>(reach);
   }
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
-  const frontend::BackendOptions backend{job.gpu.compiler.max_registers, job.gpu.compiler.schedule,
-                                         job.gpu.compiler.contract, compiler_for(job.gpu).queries_call,
-                                         job.gpu.compiler.guard_latency};
+  const CompilerParams compiler = compiler_for(job.gpu);
+  const frontend::BackendOptions backend{
+      compiler.max_registers, compiler.schedule,      compiler.contract,      compiler.queries_call,
+      compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces};
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);

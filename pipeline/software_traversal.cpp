@@ -58,6 +58,9 @@ uint32_t num_queries(const exec::Image& image) {
 CompilerParams compiler_for(const GpuParams& gpu) {
   CompilerParams out = gpu.compiler;
   out.queries_call = gpu.rt.unit == rt::kSoftware;
+  const core::Reorder::Where where = gpu.core.reorder.make({})->where();
+  out.reorder_calls = where == core::Reorder::Where::Calls;
+  out.reorder_traces = where == core::Reorder::Where::Traces;
   return out;
 }
 

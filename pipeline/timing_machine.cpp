@@ -235,8 +235,7 @@ void TimingMachine::refuse_endless_launch(Cycle now) {
       const int lane = warp->simt.active ? std::countr_zero(warp->simt.active) : 0;
       exec::Fault fault{fmt::format("no end in sight: for {} cycles no warp has begun or ended, and {}",
                                     params_.core.turnover_budget, line->to_string(*world_.image)),
-                        world_.image->place_of(line->pc),
-                        exec::shader_launch_id(world_, warp->warp_index, lane)};
+                        world_.image->place_of(line->pc), exec::shader_thread_id(*warp, lane)};
       throw Error(Exit::Fault,
                   passed().with(fault) +
                       "\n  note: --set core.turnover_budget=CYCLES allows more cycles; 0 allows any number");

@@ -3,6 +3,7 @@
 #include "frontend/backend/calls.h"
 #include "frontend/backend/emit.h"
 #include "frontend/backend/if_convert.h"
+#include "frontend/backend/live_words.h"
 #include "frontend/backend/peephole.h"
 #include "frontend/backend/schedule.h"
 #include "frontend/compile.h"
@@ -22,6 +23,7 @@ isa::Program assemble(VirtualProgram program, const BackendOptions& options, Pas
   if (options.schedule)
     pass("schedule", [&] { schedule(program, options.max_registers, options.guard_latency); });
   Allocation allocation = pass("allocate", [&] { return allocate(program, options.max_registers, ops); });
+  if (options.reorder_calls) pass("count-live-words", [&] { count_live_words(program, allocation); });
   pass("expand-calls", [&] { expand_calls(program, allocation, ops); });
   return pass("emit", [&] { return emit(program, allocation, ops); });
 }

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "isa/hit_object.h"
 
+#include <string_view>
 #include <utility>
 
 #include "frontend/lower/lowering.h"
@@ -105,9 +106,26 @@ void get_attributes(ModuleLowering& l, const Instruction& inst, const LoweringRo
   l.note_store(PointerSpace::Local);
 }
 
-// Model: lanes stay in their warps. The only difference that a program can see is that fewer of its hit
-// shaders run together.
-void reorder(ModuleLowering&, const Instruction&, const LoweringRow&) {
+// Emits the op with its operands, the last of which, the number of live registers, the backend fills in. What
+// was computed is forgotten, because the lane of a thread may be another one afterwards. Without a core that
+// regroups lanes, all of them stay in their warps, and the call is nothing.
+void reorder(ModuleLowering& l, std::string_view op, Operands operands) {
+  operands.push_back(Operand::value(0));
+  l.emit().effect(op, std::move(operands));
+  l.emit().forget();
+}
+
+// The operands are: object, and hint and number of bits if there is a hint.
+void reorder_by_object(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
+  if (!l.reorders()) return;
+  Operands operands{object(l, inst.operands[0])};
+  for (size_t i = 1; i < 3; ++i)
+    operands.push_back(i < inst.operands.size() ? l.scalar(inst.operands[i]) : Operand::value(0));
+  reorder(l, row.name32, std::move(operands));
+}
+
+void reorder_by_hint(ModuleLowering& l, const Instruction& inst, const LoweringRow& row) {
+  if (l.reorders()) reorder(l, row.name32, {l.scalar(inst.operands[0]), l.scalar(inst.operands[1])});
 }
 
 using enum spv::Op;
@@ -142,8 +160,8 @@ constexpr LoweringRow kHitObjectRows[] = {
     {OpHitObjectGetObjectRayDirectionNV, get<HitObjectValue::ObjectDirection>, ""},
     {OpHitObjectGetObjectToWorldNV, get_matrix<HitObjectValue::ObjectToWorld>, ""},
     {OpHitObjectGetWorldToObjectNV, get_matrix<HitObjectValue::WorldToObject>, ""},
-    {OpReorderThreadWithHitObjectNV, reorder, ""},
-    {OpReorderThreadWithHintNV, reorder, ""},
+    {OpReorderThreadWithHitObjectNV, reorder_by_object, "ho.reorder"},
+    {OpReorderThreadWithHintNV, reorder_by_hint, "ho.reorder.hint"},
 };
 
 }  // namespace

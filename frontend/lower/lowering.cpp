@@ -12,6 +12,7 @@
 #include "frontend/deep_stack.h"
 #include "frontend/glsl/debug_print.h"
 #include "frontend/lower/query_calls.h"
+#include "frontend/lower/trace_reorders.h"
 #include "frontend/lower/typed.h"
 #include "frontend/pass_times.h"
 #include "frontend/spirv/source_lines.h"
@@ -19,8 +20,13 @@
 
 namespace glint::frontend {
 ModuleLowering::ModuleLowering(const Module& module, const std::string& name, const EntryPoint& entry,
-                               bool contract)
-    : module_(module), entry_(entry), contract_(contract), layout_(module), emitter_(program_) {
+                               bool contract, bool reorders)
+    : module_(module),
+      entry_(entry),
+      contract_(contract),
+      reorders_(reorders),
+      layout_(module),
+      emitter_(program_) {
   program_.name = name;
   program_.files = module.files;
   program_.scopes = module.scopes;
@@ -346,10 +352,10 @@ const LoweringRow* find_lowering_row(spv::Op op) {
 }
 
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
-                                const std::string& entry_point, bool contract) {
+                                const std::string& entry_point, bool contract, bool reorders) {
   const Module module = Module::parse(spirv, name);
   VirtualProgram program =
-      ModuleLowering(module, name, module.entry_point(entry_point, name), contract).run();
+      ModuleLowering(module, name, module.entry_point(entry_point, name), contract, reorders).run();
   std::vector<std::string> texts = listing_of(spirv);
   for (size_t i = 0; i < texts.size(); ++i)
     program.spirv.push_back({std::move(texts[i]), module.lines.at(i)});
@@ -361,9 +367,10 @@ isa::Program lower(const std::vector<uint32_t>& spirv, const std::string& name, 
   return with_deep_stack([&] {
     VirtualProgram program = [&] {
       const PassTimer timer(times, "lowering", "");
-      return lower_to_virtual(spirv, name, entry_point, options.contract);
+      return lower_to_virtual(spirv, name, entry_point, options.contract, options.reorder_calls);
     }();
     if (options.queries_call) make_queries_calls(program);
+    if (options.reorder_traces) reorder_before_hit_shaders(program);
     return assemble(std::move(program), options, times);
   });
 }

@@ -27,7 +27,8 @@ namespace glint::frontend {
 // Runs the lowering without the backend, for tests and for `--emit virtual`. Throws UnsupportedError as
 // lower() does.
 VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::string& name,
-                                const std::string& entry_point = {}, bool contract = false);
+                                const std::string& entry_point = {}, bool contract = false,
+                                bool reorders = false);
 
 // Says what memory a pointer points into. An AttributePair is hit attributes of two floats, which hit shaders
 // find in %hit.u and %hit.v. A Resource is a descriptor; a buffer is one only while the index into an array
@@ -112,10 +113,12 @@ void lower_print(ModuleLowering& lowering, const Instruction& inst);
 
 class ModuleLowering {
  public:
-  // `contract` allows products and sums to become one op (contract.cpp).
+  // `contract` allows products and sums to become one op (contract.cpp). `reorders` is
+  // BackendOptions::reorder_calls.
   ModuleLowering(const Module& module, const std::string& name, const EntryPoint& entry,
-                 bool contract = false);
+                 bool contract = false, bool reorders = false);
   VirtualProgram run();
+  bool reorders() const { return reorders_; }
 
   // --- Control. lower_control() calls these functions block by block.
   void prologue();                            // emits initialisers of variables
@@ -183,7 +186,7 @@ class ModuleLowering {
 
   const Module& module_;
   const EntryPoint& entry_;
-  const bool contract_;
+  const bool contract_, reorders_;
   Layout layout_;
   VirtualProgram program_;
   Emitter emitter_;

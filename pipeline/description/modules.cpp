@@ -133,10 +133,11 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
   if (only_reflect)
     compiled.simplified = frontend::simplify(words, file.path, notes, validity);
   else
-    compiled = frontend::compile_module(words, file.path, file.entry,
-                                        {compiler.max_registers, compiler.schedule, compiler.contract,
-                                         compiler.queries_call, compiler.guard_latency},
-                                        notes, file.glsl.cache, validity);
+    compiled = frontend::compile_module(
+        words, file.path, file.entry,
+        {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call,
+         compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces},
+        notes, file.glsl.cache, validity);
   simplified_.push_back(frontend::reflect(compiled.simplified, file.path));
   module.reflection.local_size = simplified_.back().local_size;
   module.program = std::move(compiled.program);

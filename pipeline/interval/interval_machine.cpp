@@ -40,6 +40,7 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
     if (!choice.is_in_interval_model())
       message += fmt::format("the interval model does not know {} = \"{}\"\n", key, choice.name);
   };
+  check_policy("core.reorder", params.core.reorder);
   check_policy("rt.any_hit", rt.any_hit);
   check_policy("rt.scheduler", rt.scheduler);
   check_policy("rt.coalescing", rt.coalescing);

@@ -10,7 +10,7 @@ import subprocess
 import glint_case
 from glint_case import ROOT, GlintTest, read_png
 
-PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion"]
+PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion", "reordering"]
 
 
 def npy(path):

@@ -1,7 +1,11 @@
-# Adds tests of every policy by the command: its cycles, the bytes of two frames, and policies that are built outside of the tree.
+# Adds tests of every policy by the command: its cycles, the bytes of two frames, policies that are built outside of the tree, and what regrouping
+# threads does.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Table Frames Plugin NewPolicy)
     add_test(NAME cli_Policy${suite} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/policy_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
+  foreach(suite Effect Same)
+    add_test(NAME cli_Reorder${suite} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/reorder_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
 endif()

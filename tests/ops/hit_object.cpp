@@ -104,6 +104,11 @@ std::string maker_text(Maker maker) {
 std::string body_text(Maker maker) {
   std::string out = "    ho.empty 3;\n" + maker_text(maker) + ray_state() +
                     fmt::format("    ho.miss 4, 1, 0, 0, 0, 0, 0, 0, 0, {};\n", input(RayInput::kTmin));
+  // Threads may move between reads of the object. The hints differ, so that they do.
+  const auto hint = [](std::string_view op) {
+    return fmt::format("    {}{}, 3, 90;\n", op, input(kMadePrimitive));
+  };
+  out += hint("ho.reorder 3, ");
   const uint32_t count = uint32_t(value_names().size());
   for (uint32_t i = 0; i < count; ++i)
     out += fmt::format("    ho.value %r9, 3, {};\n", i) + log_word(kValues + i, "%r9");
@@ -112,7 +117,7 @@ std::string body_text(Maker maker) {
   for (uint32_t i = 0; i < 2; ++i)
     out += fmt::format("    ld.local.b32 %r9, [%r12 + {}];\n    @%p2", 4 * i) +
            log_word(kValues + count + i, "%r9");
-  return out + "    ho.execute 3, %r10, %r11;\n    call.sbt.hit;\n    rt.end;\n";
+  return out + hint("ho.reorder.hint ") + "    ho.execute 3, %r10, %r11;\n    call.sbt.hit;\n    rt.end;\n";
 }
 
 // Returns what a value op gives for the object.

@@ -8,10 +8,13 @@
 
 namespace glint::test {
 
-// Runs the launch on the timing machine, which then has two cores, or on the functional machine, where a warp
-// may execute `instruction_budget` instructions. Adds the lanes that executed `counted` to `lanes`, also when
-// a fault ends the launch with an Error.
-void run_machine(const exec::World& world, bool timing, uint64_t instruction_budget,
+// Names the machines: the functional one, a timing machine of two cores, and one of a single core that
+// regroups threads where a program says that it may.
+enum class Machine { Functional, TwoCores, Sorting };
+
+// Runs the launch. On the functional machine a warp may execute `instruction_budget` instructions. Adds the
+// lanes that executed `counted` to `lanes`, also when a fault ends the launch with an Error.
+void run_machine(const exec::World& world, Machine which, uint64_t instruction_budget,
                  const isa::OpRow& counted, uint64_t& lanes);
 
 }  // namespace glint::test

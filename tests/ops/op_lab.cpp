@@ -262,7 +262,7 @@ Outcome OpLab::run_on(bool timing, const std::vector<Column>& sources, uint64_t 
   Outcome out;
   out.after = before;
   try {
-    run_machine(world, timing, 100'000, *counted_, out.lanes);
+    run_machine(world, timing ? Machine::TwoCores : Machine::Functional, 100'000, *counted_, out.lanes);
   } catch (const Error& error) {
     out.fault = error.what();
   }

@@ -82,7 +82,7 @@ void RayLab::place_table() {
   world.table.callable = {place("callable records", Region::Callable, world.callable.size()), kRecordStride};
 }
 
-RayLab::Outcome RayLab::run_on(bool timing, const isa::OpRow& counted, const ThreadWords& inputs) {
+RayLab::Outcome RayLab::run_on(Machine which, const isa::OpRow& counted, const ThreadWords& inputs) {
   REQUIRE(inputs.size() == kThreads);
   for (size_t t = 0; t < kThreads; ++t) {
     REQUIRE(inputs[t].size() <= kInputWords);
@@ -91,7 +91,7 @@ RayLab::Outcome RayLab::run_on(bool timing, const isa::OpRow& counted, const Thr
   const std::vector<uint32_t> unwritten(kThreads * kLogWords, kUnwritten);
   memory.write(log_, unwritten.data(), unwritten.size() * 4);
   Outcome out;
-  run_machine(world, timing, 1'000'000, counted, out.lanes);
+  run_machine(world, which, 1'000'000, counted, out.lanes);
   const auto words = memory.view<uint32_t>(log_, kThreads * kLogWords);
   for (size_t t = 0; t < kThreads; ++t)
     out.log.emplace_back(words.begin() + ptrdiff_t(t * kLogWords),
@@ -100,10 +100,12 @@ RayLab::Outcome RayLab::run_on(bool timing, const isa::OpRow& counted, const Thr
 }
 
 RayLab::Outcome RayLab::run(const isa::OpRow& counted, const ThreadWords& inputs) {
-  Outcome functional = run_on(false, counted, inputs);
-  const Outcome timing = run_on(true, counted, inputs);
-  CHECK(functional.log == timing.log);
-  CHECK(functional.lanes == timing.lanes);
+  Outcome functional = run_on(Machine::Functional, counted, inputs);
+  for (const Machine which : {Machine::TwoCores, Machine::Sorting}) {
+    const Outcome timing = run_on(which, counted, inputs);
+    CHECK(functional.log == timing.log);
+    CHECK(functional.lanes == timing.lanes);
+  }
   return functional;
 }
 

@@ -1,4 +1,4 @@
-// Runs a pipeline of several shaders with a binding table on both machines, and gives back what the shaders
+// Runs a pipeline of several shaders with a binding table on all machines, and gives back what the shaders
 // logged.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -10,6 +10,7 @@
 #include "exec/image.h"
 #include "isa/op_row.h"
 #include "memsys/address_space.h"
+#include "tests/ops/machine_run.h"
 
 namespace glint::test {
 
@@ -43,14 +44,14 @@ class RayLab {
     ThreadWords log;
     uint64_t lanes = 0;  // lanes that executed the counted op, as the machine says
   };
-  // Runs the pipeline on both machines, whose outcomes must be equal and without a fault.
+  // Runs the pipeline on all machines, whose outcomes must be equal and without a fault.
   Outcome run(const isa::OpRow& counted, const ThreadWords& inputs);
 
   mem::AddressSpace memory;
   exec::World world;
 
  private:
-  Outcome run_on(bool timing, const isa::OpRow& counted, const ThreadWords& inputs);
+  Outcome run_on(Machine which, const isa::OpRow& counted, const ThreadWords& inputs);
 
   exec::Image image_;
   Address inputs_ = 0, log_ = 0;

@@ -314,7 +314,9 @@ std::string trace_text(std::string_view end) {
          fmt::format("    ld.global.b32 %r8, [%rd4 + {}];\n    add.u32 %r8, %r8, 1;\n",
                      4 * uint32_t(RayLog::kTurns)) +
          log_word(RayLog::kTurns, "%r8") +
-         fmt::format("    bra LOOP;\nDONE:\n    join;\n    {};\n    rt.end;\nTRACED:\n    join;\n", end);
+         fmt::format(
+             "    bra LOOP;\nDONE:\n    join;\n    rt.reorder;\n    {};\n    rt.end;\nTRACED:\n    join;\n",
+             end);
 }
 
 std::vector<LabShader> ray_shaders(const std::string& body) {

@@ -61,6 +61,11 @@ const std::vector<Mechanism> kMechanisms = {
      [](GpuParams& p) { p.rt.mapping = PolicyChoice<rt::WorkMapping>("cooperative"); }},
     {"prefetches from stacks",
      [](GpuParams& p) { p.rt.prefetch = PolicyChoice<rt::Prefetcher>("stack_trend"); }},
+    {"threads sorted behind traces",
+     [](GpuParams& p) {
+       p.core.reorder = PolicyChoice<core::Reorder>("by_shader_record");
+       p.core.reordering = {.batch = 2, .timeout = 700};
+     }},
     {"two RT entries", [](GpuParams& p) { p.rt.mshr_entries = 2; }},
     {"Vulkan-Sim's stores and headers",
      [](GpuParams& p) {

@@ -14,6 +14,12 @@ constexpr OpRow object(std::string_view name, HitObjectOp detail, Operands opera
   return row;
 }
 
+constexpr OpRow reorder(std::string_view name, HitObjectOp detail, Operands operands, std::string_view doc) {
+  OpRow row = object(name, detail, operands, doc);
+  row.effect = Effect::Reorder;
+  return row;
+}
+
 constexpr OpRow execute() {
   OpRow row = effect_op(
       "ho.execute", Class::Rt, Unit::RtUnit, Effect::Trace, {Src32, Src32, Src32},
@@ -51,6 +57,15 @@ constexpr OpRow kRows[] = {
         "rt.corner", HitObjectOp::Corner, {Dst32, Src32},
         "Returns a coordinate of a corner of the triangle whose hit shader runs, in object space: 0 to 2 are "
         "x, y, z of the first corner, and the others follow."),
+    reorder("ho.reorder", HitObjectOp::Reorder, {Src32, Src32, Src32, Src32},
+            "Says that a core may regroup lanes here by what an object holds and a hint (object, hint, its "
+            "number of bits, number of live registers)."),
+    reorder("ho.reorder.hint", HitObjectOp::ReorderByHint, {Src32, Src32, Src32},
+            "Says that a core may regroup lanes here by a hint (hint, its number of bits, number of live "
+            "registers)."),
+    reorder("rt.reorder", HitObjectOp::ReorderByTrace, {},
+            "Says that a core may regroup lanes here by the records that the rays of the innermost trace "
+            "have hit."),
 };
 
 }  // namespace

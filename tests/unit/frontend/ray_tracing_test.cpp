@@ -171,5 +171,34 @@ TEST_CASE("every shader of the project compiles to a program that the verifier a
   CHECK(compiled >= 18);  // three workloads of six shaders
 }
 
+// Returns the instructions of the program where threads may be regrouped, as text.
+std::vector<std::string> reorders(const isa::Program& program) {
+  std::vector<std::string> out;
+  for (const isa::Inst& inst : program.code) {
+    const isa::OpRow& row = isa::op_table()[inst.op];
+    if (row.effect == isa::Effect::Reorder) out.push_back(std::string(row.name));
+  }
+  return out;
+}
+
+TEST_CASE("reorderThread is an instruction only for a machine that regroups threads, and so are traces") {
+  const std::string path = std::string(GLINT_SOURCE_DIR) + "/examples/reordering/reordering.rgen";
+  Diagnostics warnings;
+  const auto compiled = [&](const BackendOptions& options) {
+    return compile_file(path, {}, options, warnings);
+  };
+  CHECK(reorders(compiled({})).empty());
+  CHECK(reorders(compiled({.reorder_traces = true})) == std::vector<std::string>{"rt.reorder"});
+  const isa::Program program = compiled({.reorder_calls = true});
+  REQUIRE(reorders(program) == std::vector<std::string>{"ho.reorder"});
+  const auto reorder = std::find_if(program.code.begin(), program.code.end(), [](const isa::Inst& inst) {
+    return isa::op_table()[inst.op].name == "ho.reorder";
+  });
+  // Behind the call the shader needs its stack pointer, the bounce, and nothing that was only for the hint.
+  const uint32_t words = program.constants.at(reorder->operand[3] & isa::kSlotIndexMask);
+  CHECK(words >= 2);
+  CHECK(words < program.num_registers);
+}
+
 }  // namespace
 }  // namespace glint::frontend
