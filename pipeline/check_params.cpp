@@ -49,6 +49,12 @@ void check(const GpuParams& params, Diagnostics& diagnostics) {
                                   params.rt.request_bytes, mem::kSectorBytes));
   if (const std::string why = rt::RtUnit::why_not_together(params.rt); !why.empty())
     diagnostics.error({}, why);
+  const std::string who = rt::RtUnit::who_needs_treelets(params.rt);
+  if (!who.empty() && !params.bvh.layout.make({})->forms_treelets())
+    diagnostics.error({},
+                      fmt::format("{} goes by treelets, and bvh.layout = \"{}\" forms none; choose one that "
+                                  "does, such as \"treelet_breadth_first\"",
+                                  who, params.bvh.layout.name));
 }
 
 }  // namespace glint::pipeline

@@ -17,6 +17,7 @@
 #include "rtunit/ray_scheduler.h"
 #include "rtunit/shortcuts/shortcuts.h"
 #include "rtunit/stack_model.h"
+#include "rtunit/traversal_order.h"
 #include "rtunit/work_mapping.h"
 
 namespace glint::rt {
@@ -79,6 +80,7 @@ struct Params {
   PolicyChoice<RayScheduler> scheduler{"oldest_first"};
   PolicyChoice<AnyHitMode> any_hit{"immediate"};
   PolicyChoice<ChildOrder> child_order{"near_first"};
+  PolicyChoice<TraversalOrder> order{"depth_first"};
   PolicyChoice<Coalescer> coalescing{"within_warp"};
   PolicyChoice<StackModel> stack{"short_stack"};
   PolicyChoice<WorkMapping> mapping{"own_ray"};
@@ -143,6 +145,7 @@ struct Params {
                "the traversal."),
         policy(&Params::child_order, "child_order",
                "Selects the order in which a ray visits the children that it hits."),
+        policy(&Params::order, "order", "Selects which of its open nodes a ray visits next."),
         policy(&Params::coalescing, "coalescing",
                "Selects which lanes that want the same node share its fetch."),
         policy(&Params::stack, "stack", "Selects where a ray keeps the nodes that it still has to visit."),

@@ -8,6 +8,7 @@
 #include "base/stats.h"
 #include "memsys/address_space.h"
 #include "rtunit/prefetch_queue.h"
+#include "rtunit/treelets.h"
 #include "rtunit/visit.h"
 
 namespace glint::rt {
@@ -31,6 +32,10 @@ class Prefetcher {
     uint32_t warps = 0;  // slots of the warp buffer
   };
   virtual ~Prefetcher() = default;
+  // Returns whether the prefetcher goes by treelets, which not every layout forms (bvh.layout).
+  virtual bool needs_treelets() const { return false; }
+  // Returns the treelet that is being read ahead, for ray schedulers that prefer its warps.
+  virtual TreeletId treelet_ahead() const { return kNoTreelet; }
   // Tells that a ray begins, or goes on after a shader, in a lane of a warp that takes the slot.
   virtual void entered(uint32_t /*slot*/, int /*lane*/, const RayState& /*ray*/, Cycle /*now*/) {}
   // Tells that a ray has made the step of a node.

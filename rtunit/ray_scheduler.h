@@ -8,6 +8,7 @@
 #include "base/stats.h"
 #include "base/types.h"
 #include "rtunit/traversal/ray_path.h"
+#include "rtunit/treelets.h"
 
 namespace glint::rt {
 
@@ -28,6 +29,10 @@ class WantedNodes {
   virtual LaneMask lanes(uint32_t warp) const = 0;
   // Returns the node that such a lane wants. Two lanes want the same node when these are equal.
   virtual const Fetch& node(uint32_t warp, int lane) const = 0;
+  // Returns the treelet of that node.
+  virtual TreeletId treelet(uint32_t /*warp*/, int /*lane*/) const { return kNoTreelet; }
+  // Returns the treelet that the prefetcher reads ahead, if it goes by treelets.
+  virtual TreeletId treelet_ahead() const { return kNoTreelet; }
 };
 
 // Contract (tests/contract/rt_ray_scheduler_test.cpp):
@@ -51,6 +56,8 @@ class RayScheduler {
     int lane = -1;
   };
   virtual ~RayScheduler() = default;
+  // Returns whether the scheduler goes by the treelet that a prefetcher reads ahead.
+  virtual bool needs_treelet_ahead() const { return false; }
   virtual uint32_t pick(std::span<const WarpView> /*warps*/) { return kNone; }
   virtual Choice choose(std::span<const WarpView> warps, const WantedNodes&) { return {pick(warps), -1}; }
 };

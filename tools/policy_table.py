@@ -11,9 +11,11 @@ import tempfile
 PATH = "tests/cli/policies.csv"
 # One core with a small L1, so that a few warps compete for all of its parts.
 FRAME = ["WKND_PT", "--config", "mobile", "--size", "24x16", "--spp", "1", "--set", "cores=1", "--set", "memory.l1.size=4096"]
-# Lists keys that stand for several, and what else a key needs to have an effect.
+# Lists keys that stand for several, and what else a key or one of its policies needs to have an effect.
 KEYS = {"*.replacement": "memory.l1.replacement"}
-NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"]}
+TREELETS = ["bvh.layout=treelet_breadth_first"]
+NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"], "rt.order=two_stacks": TREELETS,
+         "rt.prefetch=treelet": TREELETS, "rt.scheduler=omr": [*TREELETS, "rt.prefetch=treelet"], "rt.scheduler=pmr": [*TREELETS, "rt.prefetch=treelet"]}
 
 
 def listed(glint) -> list[list[str]]:
@@ -29,7 +31,7 @@ def policies(glint) -> list[tuple[str, str]]:
 
 def measure(glint, key: str, name: str, folder: pathlib.Path) -> tuple[int, str]:
     """Returns the cycles of the frame with the policy, and a hash of its picture."""
-    settings = [f"--set={setting}" for setting in [*NEEDS.get(key, []), f"{key}={name}"]]
+    settings = [f"--set={setting}" for setting in [*NEEDS.get(key, []), *NEEDS.get(f"{key}={name}", []), f"{key}={name}"]]
     subprocess.run([glint, "run", *FRAME, *settings, "--out", folder], capture_output=True, text=True, check=True)
     cycles = next(row["value"] for row in csv.DictReader((folder / "stats.csv").read_text().splitlines()) if row["path"] == "gpu.cycles")
     return int(cycles), hashlib.sha256((folder / "image.png").read_bytes()).hexdigest()

@@ -44,6 +44,7 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
   check_policy("rt.any_hit", rt.any_hit);
   check_policy("rt.scheduler", rt.scheduler);
   check_policy("rt.coalescing", rt.coalescing);
+  check_policy("rt.order", rt.order);
   check_policy("rt.stack", rt.stack);
   check_policy("rt.mapping", rt.mapping);
   check_policy("rt.entry", rt.entry);

@@ -30,6 +30,7 @@ FetchQueue::FetchQueue(const Params& params, const mem::AddressSpace& memory, me
       l1_(l1),
       buffer_(buffer),
       stats_(stats),
+      treelets_(memory, buffer.size()),
       scheduler_(params.scheduler.make({&stats, buffer.size()})),
       coalescer_(params.coalescing.make({})),
       views_(buffer.size()),

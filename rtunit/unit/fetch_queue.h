@@ -12,6 +12,7 @@
 #include "memsys/request.h"
 #include "memsys/ring.h"
 #include "rtunit/params.h"
+#include "rtunit/unit/lane_treelets.h"
 #include "rtunit/unit/request_source.h"
 #include "rtunit/unit/warp_buffer.h"
 
@@ -30,12 +31,13 @@ struct ReadInFlight {
   bool is_complete() const { return unanswered == 0 && sent >= read.what.bytes; }
 };
 
-// Is told of the requests that rays need.
+// Is told of the requests that rays need, and knows what is read ahead of them.
 class DemandListener {
  public:
   virtual ~DemandListener() = default;
   // Tells that the L1 has taken a request for `bytes` from the virtual address on.
   virtual void demanded(Address from, uint32_t bytes, Cycle now) = 0;
+  virtual TreeletId treelet_ahead() const = 0;
 };
 
 class FetchQueue final : public RequestSource, private WantedNodes {
@@ -104,6 +106,10 @@ class FetchQueue final : public RequestSource, private WantedNodes {
   bool ask(Cycle now);
   LaneMask lanes(uint32_t warp) const override { return buffer_[warp].wanting; }
   const Fetch& node(uint32_t warp, int lane) const override { return buffer_[warp].read[size_t(lane)].what; }
+  TreeletId treelet(uint32_t warp, int lane) const override {
+    return treelets_.of(warp, lane, node(warp, lane).address);
+  }
+  TreeletId treelet_ahead() const override { return listener_ ? listener_->treelet_ahead() : kNoTreelet; }
   bool has_ready_warp(Cycle now);
   void prepare_request();
   uint32_t add(uint32_t slot, LaneMask lanes, const Read& read);
@@ -119,6 +125,7 @@ class FetchQueue final : public RequestSource, private WantedNodes {
   WarpBuffer& buffer_;
   RtStats& stats_;
   DemandListener* listener_ = nullptr;
+  mutable LaneTreelets treelets_;
   const std::unique_ptr<RayScheduler> scheduler_;
   const std::unique_ptr<Coalescer> coalescer_;
   std::vector<WarpView> views_;      // by slot; has_ready_warp() keeps them up to date

@@ -23,6 +23,7 @@ class PrefetchSender final : public WalkHook, public WarpExit, public DemandList
   void visited(const Visit& visit) override { policy_->visited(visit); }
   bool holds(uint32_t slot, Cycle now) override;
   void demanded(Address from, uint32_t bytes, Cycle now) override;
+  TreeletId treelet_ahead() const override { return policy_->treelet_ahead(); }
 
   // Offers the first sector of the queue to the L1, in a cycle in which nothing else was sent. Returns
   // whether the L1 took it.

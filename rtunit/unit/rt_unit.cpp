@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <concepts>
-#include <fmt/format.h>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "base/check.h"
@@ -17,35 +15,13 @@
 #include "rtunit/unit/result_writer.h"
 #include "rtunit/unit/stack_mover.h"
 #include "rtunit/unit/table_writer.h"
+#include "rtunit/unit/walk_order.h"
 
 namespace glint::rt {
 namespace {
 
 bool has_pool(const Params& params) {
   return params.pool.name != RayPool::kNone;
-}
-
-// Returns why the ray pool does not go with another choice, or nothing when it does.
-std::string why_no_pool(const Params& params) {
-  const auto why = [&](std::string_view key, std::string_view value, std::string_view reason) {
-    return fmt::format("rt.pool = \"{}\" does not go with {} = \"{}\": {}", params.pool.name, key, value,
-                       reason);
-  };
-  if (params.stack.make({})->keeps_path())
-    return why("rt.stack", params.stack.name,
-               "that stack follows the path of a ray in its lane, and rays of a pool change their lanes");
-  if (params.mapping.name != WorkMapping::kOwnRay)
-    return why("rt.mapping", params.mapping.name,
-               "lanes that work for one ray would have to move together when it changes its warp");
-  if (params.oracle.any_lane)
-    return why("rt.oracle.any_lane", "true", "with that oracle, no lane is without a ray already");
-  if (params.entry.name != RayEntry::kRoot)
-    return why("rt.entry", params.entry.name,
-               "a look-up follows its ray in one lane, and rays of a pool change their lanes");
-  if (params.any_hit.make({})->table_rows() != 0 && !params.shortcuts.store_each_hit)
-    return why("rt.any_hit", params.any_hit.name,
-               "lanes of a warp share the lines of their candidate tables, and a pool takes the lanes apart");
-  return {};
 }
 
 }  // namespace
@@ -65,16 +41,6 @@ uint64_t RtUnit::pool_bytes(const Params& params) {
 
 uint32_t RtUnit::places(const Params& params) {
   return has_pool(params) ? params.pool_warps : params.slots();
-}
-
-std::string RtUnit::why_not_together(const Params& params) {
-  if (params.mapping.name != WorkMapping::kOwnRay && params.stack.make({})->keeps_path())
-    return fmt::format(
-        "rt.mapping = \"{}\" does not go with rt.stack = \"{}\": that stack follows the path of a whole ray, "
-        "and lanes that share a ray each follow a part of it",
-        params.mapping.name, params.stack.name);
-  if (has_pool(params)) return why_no_pool(params);
-  return {};
 }
 
 RtUnit::RtUnit(const Params& params, const Context& context)
@@ -101,6 +67,8 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
   }
   if (has_pool(params))
     former_ = &add<WarpFormer>(params, context.ray_states, context.l1, buffer_, fetches_, walk_, stats_);
+  if (params.order.name != TraversalOrder::kDepthFirst)
+    add<WalkOrder>(params.order.make({&stats_, context.memory}), context.memory, &stats_);
   auto stack = params.stack.make({});
   std::unique_ptr<RayEntry> entry;
   if (params.entry.name != RayEntry::kRoot) entry = params.entry.make({&stats_, context.memory});

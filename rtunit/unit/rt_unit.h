@@ -57,6 +57,8 @@ class RtUnit final : public RtPort {
   static uint32_t places(const Params& params);
   // Returns why the chosen policies do not go together, or nothing when they do.
   static std::string why_not_together(const Params& params);
+  // Returns a chosen policy that asks for treelets, as a clause like "rt.order = ...", or nothing.
+  static std::string who_needs_treelets(const Params& params);
 
   bool can_accept() const override { return former_ ? former_->has_room() : buffer_.has_room(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;

@@ -197,6 +197,12 @@ class Effects(LabTest):
         self.assertGreater(got["perfect-prediction", "SPNZA_AO"], 1.3)
         self.assertGreater(got["perfect-prediction", "SHIP_AO"], 1)
 
+    def test_treelets_read_ahead_speed_up_a_ship_and_more_with_16_warps_than_with_4(self):
+        got = self.speedups("treelet23", ["treelet", "two-stacks", "treelet-4-warps"], "SHIP_PT", "BUNNY_PT")
+        self.assertGreater(got["treelet", "SHIP_PT"], 1.05)
+        self.assertGreater(got["treelet", "SHIP_PT"], got["two-stacks", "SHIP_PT"])
+        self.assertGreater(got["treelet", "SHIP_PT"], got["treelet-4-warps", "SHIP_PT"])
+
 
 if __name__ == "__main__":
     main()

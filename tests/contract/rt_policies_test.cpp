@@ -60,7 +60,12 @@ void choose_around(uint32_t number, Params& p) {
   p.mapping.name = take<WorkMapping>(number);
   p.entry.name = take<RayEntry>(number);
   p.pool.name = take<RayPool>(number);
+  p.order.name = take<TraversalOrder>(number);
   p.oracle.any_lane = number % 2;
+  if (p.scheduler.make({})->needs_treelet_ahead()) p.prefetch.name = "treelet";
+  Params alone = p;
+  alone.pool.name = RayPool::kNone, alone.mapping.name = WorkMapping::kOwnRay;
+  if (!RtUnit::why_not_together(alone).empty()) p.order.name = TraversalOrder::kDepthFirst;
   if (!RtUnit::why_not_together(p).empty()) p.pool.name = RayPool::kNone;
   if (!RtUnit::why_not_together(p).empty()) p.mapping.name = WorkMapping::kOwnRay;
   REQUIRE(RtUnit::why_not_together(p) == "");
@@ -81,7 +86,7 @@ std::vector<Params> combinations() {
               p.coalescing.name = coalescing;
               p.stack.name = stack;
               p.scheduler.name = scheduler;
-              choose_around(number, p);
+              choose_around(7 * number, p);  // The factor keeps a digit from following a loop.
               p.retest = retest;
               p.mshr_entries = entries;
               p.result_store = number++ % 2;
@@ -93,7 +98,7 @@ std::vector<Params> combinations() {
 
 TEST_CASE("every two policies that go together are tried together") {
   const auto names = [](const Params& p) {
-    return std::array{p.prefetch.name, p.mapping.name, p.entry.name, p.pool.name};
+    return std::array{p.prefetch.name, p.mapping.name, p.entry.name, p.pool.name, p.order.name};
   };
   std::set<std::pair<std::string, std::string>> tried;
   for (const Params& p : combinations())
@@ -102,16 +107,19 @@ TEST_CASE("every two policies that go together are tried together") {
   for (const std::string& prefetch : Registry<Prefetcher>::names())
     for (const std::string& mapping : Registry<WorkMapping>::names())
       for (const std::string& entry : Registry<RayEntry>::names())
-        for (const std::string& pool : Registry<RayPool>::names()) {
-          Params p;
-          p.prefetch.name = prefetch, p.mapping.name = mapping, p.entry.name = entry, p.pool.name = pool;
-          if (!RtUnit::why_not_together(p).empty()) continue;
-          for (const std::string& a : names(p))
-            for (const std::string& b : names(p)) {
-              CAPTURE(a, b);
-              CHECK(tried.contains({a, b}));
-            }
-        }
+        for (const std::string& pool : Registry<RayPool>::names())
+          for (const std::string& order : Registry<TraversalOrder>::names()) {
+            Params p;
+            p.stack.name = "full";
+            p.prefetch.name = prefetch, p.mapping.name = mapping, p.entry.name = entry, p.pool.name = pool;
+            p.order.name = order;
+            if (!RtUnit::why_not_together(p).empty()) continue;
+            for (const std::string& a : names(p))
+              for (const std::string& b : names(p)) {
+                CAPTURE(a, b);
+                CHECK(tried.contains({a, b}));
+              }
+          }
 }
 
 TEST_CASE(
@@ -121,16 +129,19 @@ TEST_CASE(
            prefetches = 0, predicted = 0, moves = 0, formed = 0;
   std::vector<std::unique_ptr<BuiltScene>> built;
   std::vector<Scene> scenes;
+  const auto layouts = Registry<TreeLayout>::names();
   for (const std::string& format : Registry<NodeFormat>::names()) {
     scenes.push_back(crowd(built.size(), 60));
-    built.push_back(std::make_unique<BuiltScene>(scenes.back(), format));
+    const std::string& layout = layouts[built.size() % layouts.size()];
+    built.push_back(
+        std::make_unique<BuiltScene>(scenes.back(), BuildOptions{format.c_str(), true, layout.c_str()}));
   }
   for (const Params& params : combinations()) {
     const BuiltScene& scene = *built[combination % built.size()];
     const bool gather = combination / 4 % 2 && params.pool.name == RayPool::kNone;
     ++combination;
     CAPTURE(params.child_order.name, params.coalescing.name, params.stack.name, params.scheduler.name,
-            params.prefetch.name, params.mapping.name, params.entry.name, params.pool.name,
+            params.prefetch.name, params.mapping.name, params.entry.name, params.pool.name, params.order.name,
             params.oracle.any_lane, params.retest, params.mshr_entries, gather);
     Rays expected(combination, scene, false), ticked(combination, scene, gather),
         skipped(combination, scene, gather);

@@ -56,7 +56,8 @@ TEST_CASE("a prefetcher changes no hit, repeats itself exactly and asks for memo
   Random random{8};
   const Positions positions = soup(random, 400, 10, 2);
   mem::AddressSpace memory;
-  const StructureInfo top = single(memory, triangles(positions, false));
+  const StructureInfo top =
+      single(memory, triangles(positions, false), {"bvh6", true, "treelet_breadth_first"});
   const Outcome plain = trace("none", memory, top, true);
   REQUIRE(plain.prefetched.empty());
   const auto names = Registry<Prefetcher>::names();
@@ -76,6 +77,45 @@ TEST_CASE("a prefetcher changes no hit, repeats itself exactly and asks for memo
         REQUIRE(expected.primitive == found.primitive);
       }
   }
+}
+
+TEST_CASE("the treelet prefetcher reads all of the treelet that most lanes are about to visit") {
+  Random random{8};
+  const Positions positions = soup(random, 3000, 10, 2);
+  mem::AddressSpace memory;
+  const StructureInfo top = single(memory, triangles(positions), {"bvh6", true, "treelet_breadth_first"});
+  const Treelets treelets(memory);
+  PrefetchQueue queue(512, memory, nullptr);
+  const auto prefetcher =
+      Registry<Prefetcher>::instance().entry("treelet").make_default({nullptr, queue, memory, 2});
+  CHECK(prefetcher->needs_treelets());
+  CHECK(prefetcher->treelet_ahead() == kNoTreelet);
+  RayState at_root = ray_of(top.address, {0, 0, -20}, {0, 0, 1});
+  REQUIRE(begin(at_root, memory));
+  RayState below = at_root;
+  while (below.bottom_stack_base < 0) {
+    const Fetch node = next_fetch(below);
+    step(below, memory.find(node.address, node.bytes));
+  }
+  const TreeletId first = treelets.of(next_fetch(at_root).address),
+                  second = treelets.of(next_fetch(below).address);
+  REQUIRE(first != second);
+  const auto sectors_of = [&](TreeletId treelet) {
+    uint64_t bytes = 0;
+    treelets.for_each_node(treelet, [&](const Fetch& node) { bytes += node.bytes; });
+    return bytes / mem::kSectorBytes;
+  };
+  prefetcher->entered(0, 0, at_root, 0);
+  CHECK(prefetcher->treelet_ahead() == first);
+  CHECK(queue.stats().wishes.value() == sectors_of(first));
+  prefetcher->entered(1, 5, below, 0);  // one lane each: the treelet stays
+  CHECK(prefetcher->treelet_ahead() == first);
+  prefetcher->entered(1, 6, below, 0);
+  CHECK(prefetcher->treelet_ahead() == second);
+  CHECK(queue.stats().wishes.value() == sectors_of(first) + sectors_of(second));
+  prefetcher->left(1, 0);
+  prefetcher->entered(0, 1, at_root, 0);
+  CHECK(prefetcher->treelet_ahead() == first);
 }
 
 TEST_CASE("a queue of prefetches loses nothing: each wish is counted where it went") {
