@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/config.h"
+#include "base/diagnostics.h"
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
@@ -116,6 +118,55 @@ TEST_CASE("the treelet prefetcher reads all of the treelet that most lanes are a
   prefetcher->left(1, 0);
   prefetcher->entered(0, 1, at_root, 0);
   CHECK(prefetcher->treelet_ahead() == first);
+}
+
+PolicyChoice<Prefetcher> treelet_prefetcher(const std::string& heuristic) {
+  PolicyChoice<Prefetcher> choice("treelet");
+  Config config;
+  config.add_text("test", "heuristic = \"" + heuristic + "\"");
+  Diagnostics diagnostics;
+  ConfigTable table = config.root(diagnostics);
+  Registry<Prefetcher>::instance().entry("treelet").read(table, &choice);
+  REQUIRE_FALSE(diagnostics.has_errors());
+  return choice;
+}
+
+TEST_CASE("the heuristics of the treelet prefetcher read what their names say") {
+  Random random{8};
+  const Positions positions = soup(random, 3000, 10, 2);
+  mem::AddressSpace memory;
+  const StructureInfo top = single(memory, triangles(positions), {"bvh6", true, "treelet_breadth_first"});
+  RayState at_root = ray_of(top.address, {0, 0, -20}, {0, 0, 1});
+  REQUIRE(begin(at_root, memory));
+  RayState below = at_root;
+  while (below.bottom_stack_base < 0) {
+    const Fetch node = next_fetch(below);
+    step(below, memory.find(node.address, node.bytes));
+  }
+  std::vector<Address> sectors;  // of the treelet of the bottom level's root
+  const Treelets treelets(memory);
+  treelets.for_each_node(treelets.of(next_fetch(below).address), [&](const Fetch& node) {
+    for (uint32_t at = 0; at < node.bytes; at += mem::kSectorBytes) sectors.push_back(node.address + at);
+  });
+  REQUIRE(sectors.size() >= 12);
+  // One lane stands at the top, and then `lanes` others below it. Returns what their treelet had read of it.
+  const auto reads = [&](const std::string& heuristic, int lanes) {
+    PrefetchQueue queue(512, memory, nullptr);
+    const auto prefetcher = treelet_prefetcher(heuristic).make({nullptr, queue, memory, 1});
+    prefetcher->entered(0, 0, at_root, 0);
+    queue.clear();
+    for (int lane = 1; lane <= lanes; ++lane) prefetcher->entered(0, lane, below, 0);
+    std::vector<Address> out;
+    for (; !queue.empty(); queue.note_sent(true)) out.push_back(queue.front());
+    return out;
+  };
+  CHECK(reads("always", 1).empty());  // one lane each
+  CHECK(reads("always", 2) == sectors);
+  CHECK(reads("popularity", 3).empty());  // 3 of 4 lanes are not more than 75 %.
+  CHECK(reads("popularity", 4) == sectors);
+  const auto two_thirds = ptrdiff_t((sectors.size() * 2 + 2) / 3), half = ptrdiff_t(sectors.size() / 2);
+  CHECK(reads("partial", 2) == std::vector(sectors.begin(), sectors.begin() + two_thirds));
+  CHECK(reads("latter_half", 2) == std::vector(sectors.begin() + half, sectors.end()));
 }
 
 TEST_CASE("a queue of prefetches loses nothing: each wish is counted where it went") {
