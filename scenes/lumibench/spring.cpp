@@ -1,5 +1,7 @@
-// Builds SPRNG: a girl in knitted clothes close to the camera, grass around her, and a mountain behind her.
+// Builds SPRNG: a girl in stitched clothes close to the camera, stones and grass around her, and a mountain
+// behind her.
 // SPDX-License-Identifier: Apache-2.0
+#include "scenes/generate/figures.h"
 #include "scenes/generate/generated.h"
 #include "scenes/generate/plants.h"
 #include "scenes/import/asset_folder.h"
@@ -38,43 +40,34 @@ void stitches(Model& model, const Frame& frame, uint64_t triangles, int32_t mate
 }
 
 void girl(Generator& generator, const Frame& view) {
-  const auto part = [&](const char* name, const Vec3& center, const Vec3& size, uint64_t triangles,
-                        int32_t material, float bumps) {
-    generator.model(name,
-                    [&](Model& m) { add_ball(m, view.inner(center, size), triangles, material, bumps, 4); });
-  };
   const int32_t skin = generator.material("skin", paint(223, 175, 171)),
-                jacket = generator.material("jacket", paint(163, 67, 42));
-  const int32_t pants = generator.material("pants", paint(92, 74, 101)),
-                boots = generator.material("boots", paint(150, 106, 86));
-  const int32_t hair = generator.material("hair", paint(108, 86, 99)),
-                scarf = generator.material("scarf", paint(114, 76, 64));
-  const int32_t seam = generator.material("seam", paint(92, 64, 51)),
+                jacket = generator.material("jacket", paint(163, 67, 42)),
+                pants = generator.material("pants", paint(92, 74, 101)),
+                boots = generator.material("boots", paint(150, 106, 86)),
+                hair = generator.material("hair", paint(108, 86, 99)),
+                scarf = generator.material("scarf", paint(114, 76, 64)),
+                seam = generator.material("seam", paint(92, 64, 51)),
                 band = generator.material("band", paint(69, 23, 8));
-  part("spring_body", {0, 0.42f, 0}, {0.17f, 0.21f, 0.17f}, 95'000, skin, 0.08f);
-  part("spring_jacket", {0, -0.15f, 0}, {0.3f, 0.36f, 0.2f}, 120'000, jacket, 0.2f);
-  part("spring_scarf", {0, 0.19f, 0.02f}, {0.2f, 0.08f, 0.18f}, 40'000, scarf, 0.4f);
-  part("spring_pants", {0, -0.6f, 0}, {0.22f, 0.3f, 0.18f}, 50'000, pants, 0.2f);
-  for (const float side : {-1.0f, 1.0f}) {
-    part("spring_boots", {0.13f * side, -0.95f, 0.05f}, {0.1f, 0.14f, 0.18f}, 30'000, boots, 0.2f);
-    part("spring_sleeve", {0.34f * side, -0.15f, 0.08f}, {0.1f, 0.32f, 0.1f}, 40'000, jacket, 0.25f);
-    generator.model("spring_boots_stitches", [&](Model& m) {
-      stitches(m, view.inner({0.13f * side, -0.92f, 0.05f}, {0.11f, 0.15f, 0.19f}), 60'000, seam, 3);
-    });
-  }
-  generator.model("spring_jacket_stitches", [&](Model& m) {
-    stitches(m, view.inner({0, -0.15f, 0}, {0.31f, 0.37f, 0.21f}), 235'000, seam, 1);
-  });
-  generator.model("spring_pants_stitches", [&](Model& m) {
-    stitches(m, view.inner({0, -0.6f, 0}, {0.23f, 0.31f, 0.19f}), 150'000, seam, 2);
-  });
-  generator.model("spring_hair", [&](Model& m) {
-    add_hair(m, view.inner({0, 0.52f, -0.09f}, {0.17f, 0.17f, 0.14f}), 0.3f, view.y * -2.5f, 180'000, hair,
-             7);
+  const Figure figure{.hands = {{{-0.2f, 0.47f, 0.03f}, {0.27f, 0.56f, 0.14f}}}, .long_hair = true};
+  const Frame body = view.inner({0, -1.1f, 0}, {1.72f, 1.72f, 1.72f}, -12);
+  const auto part = [&](const char* name, FigurePart kind, uint64_t triangles, int32_t material) {
+    generator.model(name, [&](Model& m) { add_figure_part(m, body, figure, kind, triangles, material); });
+  };
+  part("spring_body", FigurePart::Skin, 95'000, skin);
+  part("spring_eyes", FigurePart::Eyes, 12'000, seam);
+  part("spring_hair", FigurePart::Hair, 110'000, hair);
+  part("spring_jacket", FigurePart::Top, 240'000, jacket);
+  part("spring_pants", FigurePart::Legs, 120'000, pants);
+  part("spring_boots", FigurePart::Shoes, 50'000, boots);
+  generator.model("spring_scarf", [&](Model& m) {
+    add_ring(m, body.inner({0, 0.815f, 0}, {0.085f, 0.03f, 0.075f}), 60'000, scarf, 0.55f);
   });
   generator.model("spring_hairband", [&](Model& m) {
-    add_ring(m, {view.x * 0.2f, view.y * 0.05f, view.z * 0.2f, view.at(0, 0.56f, -0.02f)}, 8'000, band,
-             0.12f);
+    Frame ring = body.inner({0, 0.972f, -0.004f}, {0.069f, 0.007f, 0.077f});
+    add_ring(m, ring, 12'000, band, 0.06f);
+  });
+  generator.model("spring_jacket_stitches", [&](Model& m) {
+    stitches(m, body.inner({0, 0.66f, 0}, {0.12f, 0.14f, 0.08f}), 60'000, seam, 1);
   });
 }
 
@@ -88,25 +81,34 @@ float slope(float x, float z) {
 void generate(Scene& scene, const LoadOptions& options) {
   Generator generator(scene, options, kTriangles);
   const int32_t grass = generator.color("grass", 0.3f, 0.4f, 0.12f),
-                dry = generator.color("dry", 0.55f, 0.45f, 0.2f);
-  const int32_t rock = generator.color("rock", 0.45f, 0.47f, 0.42f);
+                dry = generator.color("dry", 0.55f, 0.45f, 0.2f),
+                stone = generator.color("stone", 0.42f, 0.4f, 0.36f),
+                rock = generator.color("rock", 0.45f, 0.47f, 0.42f);
   girl(generator, in_view_upright(scene.camera, 4.6f));
   Random random(28);
-  constexpr uint32_t kPatches = 36;
-  for (uint32_t k = 0; k < kPatches; ++k)
+  for (uint32_t k = 0; k < 30; ++k)
+    generator.model("GEO-Rock", [&](Model& m) {
+      const float x = -7.5f + 1.4f * float(k % 6) + random.between(-0.4f, 0.4f),
+                  z = 1.6f - 2.2f * float(k / 6) + random.between(-0.6f, 0.6f),
+                  size = random.between(0.12f, 0.34f);
+      add_ball(m, upright({x, slope(x, z) + 0.3f * size, z}, {size * 1.3f, size, size}, float(k) * 41),
+               14'000, stone, 0.35f, 1.2f);
+    });
+  for (uint32_t k = 0; k < 10; ++k)
     generator.model("GEO-Grass_patch", [&](Model& m) {
-      const float x = -5.5f + 0.8f * float(k % 8) + random.between(-0.2f, 0.2f),
-                  z = 2.6f - 1.3f * float(k / 8);
-      add_grass(m, {x - 0.6f, z - 0.8f}, {x + 0.6f, z + 0.8f}, slope, random.between(0.35f, 0.8f), 15'500,
+      const float x = -6.6f + 0.62f * float(k) + random.between(-0.2f, 0.2f), z = 1.9f - 0.35f * float(k % 3);
+      add_grass(m, {x - 0.1f, z - 0.1f}, {x + 0.1f, z + 0.1f}, slope, random.between(0.2f, 0.45f), 3'000,
                 k % 3 ? grass : dry, k);
     });
   generator.model("mountain", [&](Model& m) {
-    add_ground(m, {-700, -930}, {500, 4}, slope, 150'000, rock);
-    add_ground(m, {-30, -30}, {25, 4}, slope, generator.rest() - 150'000, grass);
+    add_ground(m, {-700, -930}, {500, -8}, slope, 300'000, rock);
+  });
+  generator.model("meadow", [&](Model& m) {
+    add_ground(m, {-24, -9}, {18, 5}, slope, generator.rest(), grass);
   });
   scene.note =
-      "The scene is a procedural figure, grass and mountain with about the original's triangle count (1.9M) "
-      "and with its number of models (51).";
+      "The scene is a procedural figure, stones, grass and mountain with about the original's triangle count "
+      "(1.9M) and with its number of models (51).";
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ if(TARGET glint)
     add_test(NAME cli_${suite}
       COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/endless_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
   endforeach()
+  add_test(NAME cli_published COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/published_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
   add_test(NAME cli_outputs COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/outputs_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
   foreach(suite Usage Compile Configuration Faults RunDirectory Docs)
     add_test(NAME cli_${suite}
