@@ -8,6 +8,7 @@
 
 #include "scenes/generate/generated.h"
 #include "scenes/generate/paintings.h"
+#include "scenes/generate/plants.h"
 #include "scenes/generate/solids.h"
 #include "scenes/import/asset_folder.h"
 #include "scenes/import/obj_loader.h"
@@ -119,6 +120,7 @@ void load(Scene& scene, const LoadOptions& options) {
 // between the columns at |x| = kColumns.
 constexpr float kHalfWidth = 560, kColumns = 260, kHalfLength = 1860, kFloor = 420, kHeight = 1500;
 constexpr uint32_t kBays = 12;  // columns on a side
+constexpr uint32_t kIvy = 850;  // leaves in a bay
 
 struct Hall {
   Generator& generator;
@@ -134,10 +136,18 @@ struct Hall {
     static constexpr Vec2 kProfile[] = {{-1, 0.9f}, {-0.95f, 1},  {-0.85f, 1},    {-0.8f, 0.7f},
                                         {0, 0.68f}, {0.8f, 0.6f}, {0.85f, 0.95f}, {1, 1}};
     const float low = floor * kFloor;
-    add_lathe(model, upright({side * kColumns, low + 130, z}, {34, 130, 34}), kProfile, 1250,
+    add_lathe(model, upright({side * kColumns, low + 130, z}, {34, 130, 34}), kProfile, 500,
               paint[floor > 0 ? 5 : 4]);
     add_rounded_box(model, upright({side * kColumns, low + 10, z}, {42, 12, 42}), 150, paint[6]);
     add_rounded_box(model, upright({side * kColumns, low + 270, z}, {46, 12, 46}), 150, paint[6]);
+    for (uint32_t leaf = 0; leaf < 8; ++leaf) {  // leaves that bend out of the capital
+      const double angle = 6.283185307 * leaf / 8;
+      const Vec3 out{cosine(angle), 0, sine(angle)}, wide{-out[2] * 10, 0, out[0] * 10};
+      add_patch(model, 40, 1, paint[6], [&](float u, float v) {
+        return Vec3{side * kColumns, low + 225 + 32 * v, z} + out * (24 + 16 * v * v) +
+               wide * ((2 * u - 1) * (1 - v * v));
+      });
+    }
   }
   // Adds what lies between two columns: the inside of a half ring, and the wall above it.
   void arch(float side, float z0, float z1, float floor) {
@@ -148,15 +158,38 @@ struct Hall {
       return {side * kColumns, std::min(low + radius * sine(angle), top - 12),
               middle - radius * cosine(angle)};
     };
-    add_patch(model, 500, 4, paint[7], [&](float u, float v) {
+    add_patch(model, 160, 4, paint[7], [&](float u, float v) {
       return rim(u) + Vec3{(v - 0.5f) * 70, 0, 0};
     });
     for (const float face : {-35.0f, 35.0f})
-      add_patch(model, 400, 4, paint[8], [&](float u, float v) {
+      add_patch(model, 120, 4, paint[8], [&](float u, float v) {
         const Vec3 p = rim(u);
         return Vec3{p[0] + face, p[1] + (top - p[1]) * v,
                     z0 + (z1 - z0) * u + (p[2] - z0 - (z1 - z0) * u) * (1 - v)};
       });
+  }
+  // Adds what stands, hangs and grows in a bay: a plant, the balustrade of the gallery, ribs of the vaults,
+  // and ivy that hangs down from the gallery.
+  void furnish(float side, float z0, float z1, uint32_t k) {
+    const float inner = side * kColumns, wall = side * kHalfWidth, middle = 0.5f * (z0 + z1);
+    add_bush(model, upright({side * 160, 88, z0}, {44, 52, 44}), 1'000, paint[22], 15, k);
+    for (uint32_t post = 0; post < 12; ++post)
+      add_cable(model, {inner, kFloor + 20, z0 + (z1 - z0) * (float(post) + 0.5f) / 12},
+                {inner, kFloor + 95, z0 + (z1 - z0) * (float(post) + 0.5f) / 12}, 0, 6, 48, paint[7]);
+    add_rounded_box(model, upright({inner, kFloor + 100, middle}, {14, 8, 0.5f * (z1 - z0)}), 150, paint[8]);
+    for (const float floor : {0.0f, 1.0f}) {
+      const float top = (floor + 1) * kFloor - 16;
+      add_cable(model, {inner, top - 110, z0}, {wall, top - 110, z1}, -26, 6, 96, paint[8]);
+      add_cable(model, {inner, top - 110, z1}, {wall, top - 110, z0}, -26, 6, 96, paint[8]);
+    }
+    Random random(31 * k + (side < 0 ? 0 : 7));
+    for (uint32_t leaf = 0; leaf < kIvy; ++leaf) {
+      const float drop = random.next() * random.next(), size = random.between(6, 13);
+      const Vec3 place{inner - side * random.between(20, 60 + 40 * drop), kFloor + 60 - 330 * drop,
+                       random.between(z0, z1)};
+      const Vec3 along = random.direction() * size, across = random.direction() * size;
+      add_quad(model, place, along, across, paint[23]);
+    }
   }
   void side_of(float side) {
     const float wall = side * kHalfWidth, inner = side * kColumns;
@@ -166,18 +199,19 @@ struct Hall {
         columns(side, z, floor);
         if (k + 1 < kBays) arch(side, z, z + bay, floor);
       }
+      if (k + 1 < kBays) furnish(side, z, z + bay, k);
       if (k % 2 == 0)
         add_cloth(model, {{80, 0, 0}, {0, 150, 0}, {0, 0, 35}, {side * (kColumns - 60), 560, z + bay / 2}},
-                  2800, paint[9 + k % 3], 5, k);
+                  1200, paint[9 + k % 3], 5, k);
       add_lathe(model, upright({side * 160, 25, z}, {28, 25, 28}),
-                std::array<Vec2, 4>{{{-1, 0.5f}, {0, 1}, {0.7f, 0.6f}, {1, 0.8f}}}, 700, paint[12]);
+                std::array<Vec2, 4>{{{-1, 0.5f}, {0, 1}, {0.7f, 0.6f}, {1, 0.8f}}}, 400, paint[12]);
     }
     for (const float floor : {0.0f, 1.0f})  // gallery ceilings
       rectangle({wall, (floor + 1) * kFloor - 8, -kHalfLength}, {inner - wall, 0, 0}, {0, 0, 2 * kHalfLength},
-                paint[2], 2400);
-    rectangle({wall, 0, -kHalfLength}, {0, 0, 2 * kHalfLength}, {0, 2 * kFloor, 0}, paint[1], 4000);
+                paint[2], 600);
+    rectangle({wall, 0, -kHalfLength}, {0, 0, 2 * kHalfLength}, {0, 2 * kFloor, 0}, paint[1], 900);
     rectangle({inner, 2 * kFloor, -kHalfLength}, {0, 0, 2 * kHalfLength}, {0, kHeight - 2 * kFloor, 0},
-              paint[0], 4000);
+              paint[0], 900);
     for (uint32_t k = 0; k < 24; ++k) {  // windows and doors
       const float z = -kHalfLength + 2 * kHalfLength * (float(k) + 0.5f) / 24;
       add_rounded_box(model, upright({k % 2 ? inner : wall, k % 2 ? 1050.0f : 160.0f, z}, {14, 110, 50}), 240,
@@ -186,10 +220,10 @@ struct Hall {
   }
   void ends() {
     for (const float z : {-kHalfLength, kHalfLength}) {
-      rectangle({-kHalfWidth, 0, z}, {2 * kHalfWidth, 0, 0}, {0, kHeight, 0}, paint[0], 4000);
+      rectangle({-kHalfWidth, 0, z}, {2 * kHalfWidth, 0, 0}, {0, kHeight, 0}, paint[0], 800);
       const float in = z < 0 ? 1.0f : -1.0f;
       add_ring(model, {{0, 170, 0}, {0, 0, 40}, {170, 0, 0}, {0, 420, z + in * 30}}, 3000, paint[17], 0.2f);
-      add_ball(model, upright({0, 420, z + in * 40}, {95, 110, 60}), 9000, paint[18], 0.3f, 2.5f);
+      add_ball(model, upright({0, 420, z + in * 40}, {95, 110, 60}), 18000, paint[18], 0.3f, 2.5f);
       for (const float x : {-420.0f, -240.0f, 240.0f, 420.0f})
         add_rounded_box(model, upright({x, 280, z + in * 20}, {60, 200, 25}), 600, paint[19]);
     }
@@ -205,7 +239,8 @@ void generate(Scene& scene, const LoadOptions& options) {
   Hall hall{generator, {}};
   for (uint32_t k = 0; k < 24; ++k) {
     const float tone = 0.5f + 0.035f * float(k % 7);
-    const Vec3 stone{tone, tone * 0.92f, tone * 0.78f};
+    const Vec3 stone =
+        k < 22 ? Vec3{tone, tone * 0.92f, tone * 0.78f} : Vec3{0.25f, 0.42f, 0.16f};  // or leaves
     const bool cloth = k >= 9 && k < 12;
     const std::string name = fmt::format("{}_{}", cloth ? "cloth" : k < 4 ? kNames[k] : "stone", k);
     const Pattern pattern = cloth ? Pattern::Stripes : k < 4 ? kPatterns[k] : Pattern::Stone;
@@ -217,8 +252,19 @@ void generate(Scene& scene, const LoadOptions& options) {
   hall.ends();
   for (int k = 0; k < 8; ++k) {  // pots on chains, over the court
     const Vec3 pot{k % 2 ? 120.0f : -120.0f, 330, -1600.0f + 400 * float(k)};
-    add_cable(hall.model, pot + Vec3{0, 500, 0}, pot, 0, 3, 400, hall.paint[20]);
-    add_ball(hall.model, upright(pot, {30, 24, 30}), 1500, hall.paint[21 + k % 3], 0.2f, 4);
+    for (int link = 0; link < 24; ++link)
+      add_ring(hall.model,
+               {{4, 0, link % 2 ? 4.0f : 0.0f},
+                {link % 2 ? 2.0f : 0.0f, 0, 2},
+                {0, 14, 0},
+                pot + Vec3{0, 30 + 21 * float(link), 0}},
+               60, hall.paint[20], 0.3f);
+    add_ball(hall.model, upright(pot, {30, 24, 30}), 1500, hall.paint[21], 0.2f, 4);
+  }
+  for (int k = 0; k < 12; ++k) {  // ropes that hold an awning over the court, from gallery to gallery
+    const float z = -1500 + 250 * float(k), side = k % 2 ? 1.0f : -1.0f;
+    add_cable(hall.model, {-side * kColumns, 800, z}, {side * kColumns, 870, z + 420}, 60, 3, 48,
+              hall.paint[20]);
   }
   const uint64_t made = hall.model.indices.size() / 3;
   hall.rectangle({-kHalfWidth, 0, kHalfLength}, {2 * kHalfWidth, 0, 0}, {0, 0, -2 * kHalfLength},
