@@ -3,6 +3,7 @@
 #include <array>
 #include <fmt/format.h>
 
+#include "scenes/generate/figures.h"
 #include "scenes/generate/generated.h"
 #include "scenes/generate/solids.h"
 #include "scenes/import/asset_folder.h"
@@ -30,11 +31,17 @@ struct Fair {
                  0.012f);
       for (uint32_t k = 0; k < kSpokes; ++k) {
         const double angle = 2 * kPi * k / kSpokes;
-        add_cable(model, middle, middle + Vec3{radius * cosine(angle), radius * sine(angle), 0}, 0, 1.1f, 400,
+        add_cable(model, middle, middle + Vec3{radius * cosine(angle), radius * sine(angle), 0}, 0, 1.1f, 32,
                   color(2));
       }
       for (const float lean : {-90.0f, 90.0f})
         add_cable(model, middle, {hub[0] + lean, 20, hub[2] + side * 2}, 0, 5, 1200, color(3));
+      for (uint32_t k = 0; k < 2 * kSpokes; ++k) {  // braces between the two rims
+        const double from = kPi * k / kSpokes, to = kPi * (k + 1) / kSpokes;
+        const float inner = radius * (k % 2 ? 0.9f : 1), outer = radius * (k % 2 ? 1 : 0.9f);
+        add_cable(model, middle + Vec3{inner * cosine(from), inner * sine(from), 0},
+                  middle + Vec3{outer * cosine(to), outer * sine(to), 0}, 0, 0.8f, 64, color(2));
+      }
     }
     for (uint32_t k = 0; k < kSpokes; ++k) {
       const double angle = 2 * kPi * k / kSpokes;
@@ -47,27 +54,34 @@ struct Fair {
   void tent(const Vec3& foot, float size, uint32_t k) {
     static constexpr Vec2 kRoof[] = {{-1, 1},       {-0.6f, 0.98f}, {-0.55f, 1.1f},
                                      {0.2f, 0.45f}, {0.9f, 0.05f},  {1, 0}};
-    add_lathe(model, upright(foot + Vec3{0, size, 0}, {size, size, size}), kRoof, 6000, color(k));
+    add_lathe(model, upright(foot + Vec3{0, size, 0}, {size, size, size}), kRoof, 3600, color(k));
     for (uint32_t s = 0; s < 12; ++s) {
       const double angle = 2 * kPi * s / 12;
       const Vec3 rim = foot + Vec3{size * 1.06f * cosine(angle), size * 0.42f, size * 1.06f * sine(angle)};
-      add_cloth(model, {{size * 0.12f, 0, 0}, {0, size * 0.12f, 0}, {0, 0, 3}, rim}, 800,
+      add_cloth(model, {{size * 0.12f, 0, 0}, {0, size * 0.12f, 0}, {0, 0, 3}, rim}, 300,
                 color(k + s % 2 + 1), 2, s);
     }
     add_ball(model, upright(foot + Vec3{0, 2 * size + 4, 0}, {4, 4, 4}), 500, color(k + 2));
+    for (uint32_t rope = 0; rope < 18; ++rope) {  // from the eaves to pegs in the ground
+      const double angle = 2 * kPi * rope / 18;
+      const Vec3 out{cosine(angle), 0, sine(angle)};
+      add_cable(model, foot + out * (size * 1.08f) + Vec3{0, size * 0.45f, 0},
+                {foot[0] + out[0] * size * 1.5f, 20, foot[2] + out[2] * size * 1.5f}, 0, 0.5f, 16, color(0));
+    }
   }
 
   void carousel(const Vec3& foot, float size) {
     static constexpr Vec2 kDeck[] = {{-1, 0}, {-1, 1}, {1, 1}, {1, 0}};
     add_lathe(model, upright(foot + Vec3{0, 6, 0}, {size, 4, size}), kDeck, 3000, color(6));
     tent(foot + Vec3{0, size * 0.55f, 0}, size, 7);
+    add_ball(model, upright(foot + Vec3{0, size * 2.6f + 12, 0}, {7, 7, 7}), 14'000, color(10), 0.15f, 4);
     for (uint32_t k = 0; k < 16; ++k) {
       const double angle = 2 * kPi * k / 16;
       const Vec3 place = foot + Vec3{size * 0.8f * cosine(angle), 26, size * 0.8f * sine(angle)};
       add_cable(model, place + Vec3{0, -20, 0}, place + Vec3{0, 40, 0}, 0, 1, 300, color(8));
       // This ball is a horse's body.
-      add_ball(model, upright(place, {5, 6, 12}, float(k) * -22.5f), 2600, color(9 + k), 0.25f, 1.5f);
-      add_ball(model, upright(place + Vec3{0, 8, 0}, {3, 6, 4}), 900, color(9 + k), 0.2f, 2);
+      add_ball(model, upright(place, {5, 6, 12}, float(k) * -22.5f), 1300, color(9 + k), 0.25f, 1.5f);
+      add_ball(model, upright(place + Vec3{0, 8, 0}, {3, 6, 4}), 500, color(9 + k), 0.2f, 2);
     }
   }
 
@@ -83,15 +97,55 @@ struct Fair {
         add_ball(
             model,
             frame.inner({float(toy) * 0.28f - 0.84f, 0.45f * float(row) + 0.1f, -0.7f}, {0.1f, 0.14f, 0.15f}),
-            260, color(uint32_t(toy + row) + k), 0.25f, 2);
+            120, color(uint32_t(toy + row) + k), 0.25f, 2);
   }
 
   void lamps(const Vec3& start, const Vec3& end, uint32_t k) {
-    add_cable(model, start, end, 22, 0.6f, 800, color(0));
+    add_cable(model, start, end, 22, 0.6f, 480, color(0));
     for (uint32_t lamp = 0; lamp < 24; ++lamp) {
       const float t = (float(lamp) + 0.5f) / 24;
       const Vec3 place = start + (end - start) * t - Vec3{0, 88 * t * (1 - t) + 4, 0};
-      add_ball(model, upright(place, {2.6f, 3.4f, 2.6f}), 200, color(k + lamp));
+      add_ball(model, upright(place, {2.6f, 3.4f, 2.6f}), 72, color(k + lamp));
+      for (const float beside : {-0.3f, 0.3f}) {  // paper flags
+        const Vec3 along = (end - start) * (beside / 24), flag = place + along + Vec3{0, 3, 0};
+        add_patch(model, 8, 1, color(k + lamp + 3), [&](float u, float v) {
+          return flag + along * ((u - 0.5f) * (1 - v)) - Vec3{0, 9 * v, 2 * u * v};
+        });
+      }
+    }
+  }
+
+  // Adds visitors on the way between the booths, some of them with balloons.
+  void visitors() {
+    Random random(77);
+    for (uint32_t k = 0; k < 12; ++k) {
+      const Vec3 feet{random.between(190, 360), 21, -800 - 18 * float(k)};
+      const Figure figure{.hands = {{{-0.2f, 0.5f, 0.1f}, {0.22f, k % 2 ? 0.9f : 0.5f, 0.15f}}},
+                          .skirt = k % 3 == 0,
+                          .long_hair = k % 3 == 0};
+      const Frame frame = upright(feet, {42, 42, 42}, random.between(0, 360));
+      add_figure(model, frame, figure, 5'800,
+                 {color(0), color(3), color(6 + k), color(k + 1), color(k + 12), color(3)});
+      for (uint32_t b = 0; k % 2 && b < 7; ++b) {
+        const Vec3 hand = frame.at(figure.hands[1]),
+                   place = hand + Vec3{random.between(-9, 9), random.between(24, 40), random.between(-9, 9)};
+        add_ball(model, upright(place, {5, 6, 5}), 160, color(k + 3 * b));
+        add_cable(model, hand, place, 0, 0.2f, 32, color(0));
+      }
+    }
+  }
+
+  // Adds a fence along the way: posts, two rails and a crossed brace in each field.
+  void fence(const Vec3& start, const Vec3& end) {
+    constexpr uint32_t kPosts = 40;
+    const Vec3 step = (end - start) * (1.0f / kPosts);
+    for (uint32_t k = 0; k < kPosts; ++k) {
+      const Vec3 foot = start + step * float(k), next = foot + step;
+      add_cable(model, foot, foot + Vec3{0, 24, 0}, 0, 0.9f, 32, color(2));
+      for (const float low : {5.0f, 21.0f})
+        add_cable(model, foot + Vec3{0, low, 0}, next + Vec3{0, low, 0}, 0, 0.6f, 16, color(2));
+      add_cable(model, foot + Vec3{0, 5, 0}, next + Vec3{0, 21, 0}, 0, 0.5f, 16, color(2));
+      add_cable(model, foot + Vec3{0, 21, 0}, next + Vec3{0, 5, 0}, 0, 0.5f, 16, color(2));
     }
   }
 };
@@ -110,7 +164,11 @@ void build_fair(Fair& fair) {
   for (uint32_t k = 0; k < 10; ++k) {
     const float z = -760 - 60 * float(k);
     fair.lamps({140 - 8 * float(k), 150, z}, {400, 165, z - 40}, k);
+    fair.lamps({400 - 12 * float(k), 150, z - 20}, {120 + 10 * float(k), 175, z - 150}, k + 4);
   }
+  fair.visitors();
+  fair.fence({200, 20, -790}, {150, 20, -1200});
+  fair.fence({330, 20, -780}, {380, 20, -930});
 }
 
 // Adds a coaster behind the fair: two rails, ties and posts.
@@ -122,7 +180,12 @@ void build_coaster(Fair& fair) {
                       -1500 + 130 * sine(t)};
     for (size_t side = 0; side < 2; ++side) rails[side].push_back(middle + Vec3{0, 0, side ? 8.0f : -8.0f});
     if (k % 4 == 0) add_cable(fair.model, rails[0].back(), rails[1].back(), 0, 1, 16, fair.color(2));
-    if (k % 12 == 0) add_cable(fair.model, middle, {middle[0], 20, middle[2]}, 0, 2.5f, 160, fair.color(3));
+    if (k % 12 == 0) add_cable(fair.model, middle, {middle[0], 20, middle[2]}, 0, 2.5f, 16, fair.color(3));
+    if (k % 12 == 0 && k > 0) {  // braces between the posts
+      const Vec3& before = rails[0][size_t(k - 12)];
+      add_cable(fair.model, {before[0], 20, before[2]}, middle, 0, 1.2f, 16, fair.color(2));
+      add_cable(fair.model, before, {middle[0], 20, middle[2]}, 0, 1.2f, 16, fair.color(2));
+    }
   }
   for (const auto& rail : rails) add_tube(fair.model, rail, 2, 2, 8, fair.color(4));
 }
@@ -140,7 +203,7 @@ void generate(Scene& scene, const LoadOptions& options) {
   build_fair(fair);
   build_coaster(fair);
   const uint64_t made = fair.model.indices.size() / 3;
-  add_patch(fair.model, made + 20'000 < kTriangles ? kTriangles - made : 20'000, 1, fair.color(3),
+  add_patch(fair.model, made + 8'000 < kTriangles ? kTriangles - made : 8'000, 1, fair.color(3),
             [](float u, float v) -> Vec3 {
               const float x = -700 + 1600 * u, z = -600 - 1200 * v;
               return {x, 20 + 2.5f * fractal({x * 0.03f, 0, z * 0.03f}, 3), z};
