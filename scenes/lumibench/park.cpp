@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/diagnostics.h"
+#include "scenes/generate/figures.h"
 #include "scenes/generate/generated.h"
 #include "scenes/generate/plants.h"
 #include "scenes/import/asset_folder.h"
@@ -121,17 +122,6 @@ float lawn(float x, float z) {
   return 0.075f + 0.02f * fractal({x * 1.2f, 0, z * 1.2f}, 2);
 }
 
-void add_person(Model& model, const Vec3& feet, int32_t material) {
-  add_ball(model, upright(feet + Vec3{0, 0.185f, 0}, {0.017f, 0.02f, 0.017f}), 12'000, material, 0.1f);
-  add_ball(model, upright(feet + Vec3{0, 0.13f, 0}, {0.03f, 0.045f, 0.022f}), 15'000, material, 0.1f);
-  for (const float side : {-1.0f, 1.0f}) {
-    add_ball(model, upright(feet + Vec3{0.014f * side, 0.05f, 0}, {0.012f, 0.055f, 0.014f}), 6'000, material,
-             0.1f);
-    add_ball(model, upright(feet + Vec3{0.036f * side, 0.125f, 0}, {0.009f, 0.045f, 0.01f}), 5'000, material,
-             0.1f);
-  }
-}
-
 void add_car(Model& model, const Frame& f, int32_t material) {
   add_rounded_box(model, f.inner({0, 0.35f, 0}, {1, 0.32f, 0.45f}), 40'000, material, 0.3f);
   add_rounded_box(model, f.inner({-0.1f, 0.8f, 0}, {0.65f, 0.3f, 0.4f}), 30'000, material, 0.4f);
@@ -157,7 +147,7 @@ void trees(Generator& generator, int32_t wood_material, int32_t leaf_material) {
                 .wood = 0.34f,
                 .bark = wood_material,
                 .leaves = leaf_material,
-                .seed = n},
+                .seed = n + 21},
                304'000 / 3);
     }
     generator.model(kNames[k / 3], [&](Model& m) {
@@ -191,7 +181,9 @@ void generate(Scene& scene, const LoadOptions& options) {
           362'000, rock);
     });
     generator.model("human", [&](Model& m) {
-      add_person(m, k ? Vec3{0.18f, 0.08f, -0.26f} : Vec3{0.7f, 0.08f, 0.27f}, skin);
+      const Frame frame = upright(k ? Vec3{0.18f, 0.08f, -0.26f} : Vec3{0.7f, 0.08f, 0.27f},
+                                  {0.205f, 0.205f, 0.205f}, k ? -60.0f : 80.0f);
+      add_figure(m, frame, {.skirt = k == 1}, 38'000, {skin, skin, skin, skin, skin, skin});
     });
   }
   generator.model("Benz", [&](Model& m) {
@@ -204,7 +196,7 @@ void generate(Scene& scene, const LoadOptions& options) {
     const uint64_t share = generator.rest() / (12 - k);
     generator.model("grass", [&](Model& m) {
       const float x = 1.35f - 0.42f * float(k / 2), z = k % 2 ? 0.35f : -0.75f;
-      add_grass(m, {x - 0.45f, z - 0.2f}, {x + 0.25f, z + 0.9f}, lawn, 0.11f, share, leaf, k);
+      add_grass(m, {x - 0.45f, z - 0.2f}, {x + 0.25f, z + 0.9f}, lawn, 0.14f, share, leaf, k);
     });
   }
   scene.note =
