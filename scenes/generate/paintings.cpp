@@ -1,4 +1,4 @@
-// Paints textures: stone, bricks, planks, panels, cloth, bark and leaves.
+// Paints textures: stone, bricks, planks, panels, cloth, bark, lacquer and leaves.
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/generate/paintings.h"
 
@@ -37,6 +37,7 @@ float brick(float u, float v, float rows, float joint) {
 float shade(Pattern pattern, float u, float v) {
   switch (pattern) {
     case Pattern::Stone:
+    case Pattern::Lacquer:
       return 1;
     case Pattern::Bricks:
       return brick(u, v, 16, 0.06f);
@@ -79,7 +80,8 @@ Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32
         smooth[x] = 1 + 0.4f * fractal({float(x) * 0.05f, float(y / kTile) * 0.05f, float(seed) * 3.3f}, 2);
     for (uint32_t x = 0; x < width; ++x) {
       const float u = float(x) / float(width), v = float(y) / float(height);
-      const float light = shade(pattern, u, v) * smooth[x / kTile] * (0.92f + 0.08f * grain(x, y, seed));
+      const float cloud = pattern == Pattern::Lacquer ? 1 : smooth[x / kTile];
+      const float light = shade(pattern, u, v) * cloud * (0.92f + 0.08f * grain(x, y, seed));
       uint8_t* texel = &texture.rgba[4 * (size_t(y) * width + x)];
       for (size_t c = 0; c < 3; ++c) texel[c] = unorm(color[c] * light);
       texel[3] = 255;

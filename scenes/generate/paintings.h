@@ -1,4 +1,4 @@
-// Paints textures for generated scenes: stone, bricks, planks, panels, cloth, bark and leaves.
+// Paints textures for generated scenes: stone, bricks, planks, panels, cloth, bark, lacquer and leaves.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace glint::scenes {
 
-enum class Pattern { Stone, Bricks, Planks, Panels, Stripes, Bark };
+enum class Pattern { Stone, Bricks, Planks, Panels, Stripes, Bark, Lacquer };
 
 // Returns an opaque texture. `color` is 0 to 1, and `width` and `height` are in texels.
 Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32_t height, uint32_t seed);

@@ -40,7 +40,7 @@ constexpr Expected kBuiltIn[] = {{"SPNZA", 1, 24, 262'267, 99, 100, 0x614bd15786
                                  {"LANDS", 26, 0, 3'300'000, 99, 100, 0x5f9b0afc917735e2},
                                  {"FRST", 283, 0, 4'200'000, 55, 75, 0x99968063edde6fde},
                                  {"PARK", 37, 0, 6'000'000, 70, 92, 0x31dd21f74a75cb85},
-                                 {"CAR", 302, 244, 12'700'000, 55, 80, 0x30f847318d21ff0d},
+                                 {"CAR", 302, 244, 12'700'000, 55, 80, 0xb80367f7a364e859},
                                  {"ROBOT", 248, 0, 20'600'000, 45, 70, 0x51baddf7e4c15ec6}};
 
 // Scenes with more triangles are made only with GLINT_LARGE_SCENES, because they take seconds and gigabytes.
