@@ -4,6 +4,7 @@
 import csv
 import json
 import math
+import re
 
 from glint_case import ROOT, GlintTest, main
 
@@ -111,6 +112,69 @@ class Runs(LabTest):
                                                                 .replace("[0.2, 5]", "[4, 5]")), "--workloads", "SHIP_SH").stdout)
         done = self.lab(1, self.experiment(published=2), "--check", "--workloads", "SHIP_SH")
         self.assertIn("has not the published sign: other", done.stderr)
+
+
+class Pairs(LabTest):
+    TEXT = """title = "Pairs"
+source = "a test"
+config = "vulkan-sim-mobile"
+workloads = ["SHIP_SH"]
+size = "16x16"
+pairs = true
+""" + "".join(f"""
+[[arm]]
+name = "{name}"
+{against}set = [{keys}]
+""" for name, against, keys in (("base", "", ""), ("prefetch", 'against = "base"\n', '"rt.prefetch=stack_trend"'), ("helpers", 'against = "base"\n', '"rt.mapping=cooperative"'),
+                                ("trail", 'against = "base"\n', '"rt.stack=restart_trail"'), ("other", 'against = "base"\n', '"rt.prefetch=none"')))
+
+    def test_each_two_arms_run_together_and_refused_pairs_say_why(self):
+        text = self.lab(0, self.write("mine.toml", self.TEXT)).stdout
+        speedups = {row["arm"]: row["speedup"] for row in self.rows("out/lab-mine")}
+        self.assertEqual(set(speedups), {"base", "prefetch", "helpers", "trail", "other", "prefetch+helpers", "prefetch+trail", "helpers+other", "trail+other"})
+        config = (self.folder / "out/lab-mine/prefetch+helpers/SHIP_SH/config.toml").read_text()
+        self.assertIn('prefetch = "stack_trend"', config)
+        self.assertIn('mapping = "cooperative"', config)
+        self.assertIn('prefetch and other: both change rt.prefetch\n', text)
+        self.assertRegex(text, r'helpers and trail: rt\.mapping = "cooperative" does not go with rt\.stack = "restart_trail": that stack')
+        row = re.search(r"^prefetch +(\S+) +(\S+) +(\S+) +(\S+)", text[text.index("\npairs "):], re.M).groups()
+        self.assertEqual(row, (*(f"{float(speedups[name]):.3f}" for name in ("prefetch", "prefetch+helpers", "prefetch+trail")), "refused"))
+
+    def test_an_impossible_arm_is_refused_before_anything_runs(self):
+        self.expect(2, ["the arm 'trail' of 'mine' is refused", "short_stack"], "lab", self.write("mine.toml", self.TEXT.replace("restart_trail", "short_stak")))
+        self.assertFalse((self.folder / "out").exists())
+
+
+class Page(LabTest):
+    def test_the_page_has_the_tables_and_can_be_made_again(self):
+        self.assertIn("out/lab-mine/report.html", self.lab(0, self.experiment()).stdout)
+        page = (self.folder / "out/lab-mine/report.html").read_bytes()
+        text = page.decode()
+        document = json.loads((self.folder / "out/lab-mine/lab.json").read_text())
+        other = document["arms"][1]
+        for part in ('id="lab"', 'data-table="lab-arms"', 'data-table="lab-workloads"', f"{other['here']:.3f}", "0.500", "0.2 to 5", "nodes a ray", "SHIP_SH"):
+            self.assertIn(part, text)
+        self.assertEqual(document["size"], "16x16")
+        self.assertEqual([one["workload"] for one in other["workloads"]], ["SHIP_SH", "WKND_SH"])
+        (self.folder / "out/lab-mine/report.html").unlink()
+        self.assertEqual(self.glint("report", "out/lab-mine").returncode, 0)
+        self.assertEqual((self.folder / "out/lab-mine/report.html").read_bytes(), page)
+
+    def test_the_page_shows_pairs_and_escapes_names(self):
+        self.lab(0, self.write("mine.toml", Pairs.TEXT.replace('"Pairs"', '"Pairs <b>"')), "--arms", "prefetch+helpers", "helpers", "prefetch")
+        text = (self.folder / "out/lab-mine/report.html").read_text()
+        self.assertIn("Pairs &lt;b&gt;", text)
+        self.assertIn('data-table="lab-pairs"', text)
+        self.assertNotIn("<b>", text.split("<script")[0])
+
+    def test_a_damaged_document_is_refused(self):
+        self.lab(0, self.experiment(), "--workloads", "SHIP_SH")
+        path = self.folder / "out/lab-mine/lab.json"
+        good = path.read_text()
+        for damage, parts in ((good[:100], ["lab.json", "no result of an experiment"]), (good.replace('"schema": 1', '"schema": 7'), ["schema 7, expected 1"]),
+                              (good.replace('"arms"', '"arm"'), ["cannot be shown", "run `glint lab` again"])):
+            path.write_text(damage)
+            self.expect(2, parts, "report", "out/lab-mine")
 
 
 class Oracles(LabTest):

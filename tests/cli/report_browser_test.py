@@ -42,6 +42,18 @@ class Browser(ReportTest):
         self.assertEqual(console, [])
         return Elements(done.stdout), done.stdout
 
+    def test_an_experiment_draws_its_speed_ups_beside_the_published_ones(self):
+        done = self.glint("lab", "coop25", "--arms", "cooperative", "subwarps-of-4", "--workloads", "SHIP_PT", "--size", "16x16", "--out", self.folder / "lab")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        document = json.loads((self.folder / "lab/lab.json").read_text())
+        self.runs["lab"] = self.folder / "lab"
+        self.addCleanup(self.runs.pop, "lab")
+        _, text = self.load("lab")
+        drawn = text[text.index('id="lab-means"'):text.index('id="lab-by-workload"')]
+        self.assertIn("<svg", drawn)
+        values = [float(value) for value in re.findall(r'data-value="([^"]+)"', drawn)]
+        self.assertEqual(values, [number for arm in document["arms"][1:] for number in (arm["here"], arm["published"])])
+
     def test_one_run_shows_the_numbers_of_stats_json(self):
         page, text = self.load("wknd")
         shown = {attributes["data-stat"]: (attributes["data-value"], words) for _, attributes, words in page.having("data-stat")}

@@ -5,13 +5,17 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "apps/glint/bench/bench.h"
 #include "apps/glint/lab/experiment.h"
+#include "apps/glint/lab/pairs.h"
 #include "apps/glint/lab/results.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/oracles.h"
+#include "apps/glint/options/report_writer.h"
 #include "apps/glint/session.h"
 #include "report/files/run_directory.h"
 
@@ -98,7 +102,7 @@ BenchOptions bench_of(const Experiment& experiment, const LabArm& arm, const Lab
   out.settings = with_oracles(oracles, experiment.settings);
   out.settings.insert(out.settings.end(), arm.settings.begin(), arm.settings.end());
   out.out = folder + "/" + arm.name;
-  out.frame.size = options.size.empty() ? experiment.size : options.size;
+  out.frame.size = experiment.size;
   out.frame.params.samples = experiment.samples;
   out.frame.params.bounces = experiment.bounces;
   out.frame.params.ao_reach = arm.ao_reach.value_or(experiment.ao_reach);
@@ -108,12 +112,24 @@ BenchOptions bench_of(const Experiment& experiment, const LabArm& arm, const Lab
   return out;
 }
 
-Exit conclude(const Experiment& experiment, const LabOptions& options, const std::string& folder) {
+// Writes the document and the page that `glint report` makes of it.
+void write_page(const Session& session, const Experiment& experiment, const std::vector<LabResult>& results,
+                const std::vector<RefusedPair>& refused, const std::string& folder) {
+  nlohmann::ordered_json document = lab_json(experiment, results);
+  for (const RefusedPair& pair : refused)
+    document["refused"].push_back({{"first", pair.first}, {"second", pair.second}, {"reason", pair.reason}});
+  report::write_file(folder + "/lab.json", document.dump(1) + "\n");
+  write_report(session, {folder}, "", std::nullopt);
+}
+
+Exit conclude(const Session& session, const Experiment& experiment, const std::vector<RefusedPair>& refused,
+              const LabOptions& options, const std::string& folder) {
   const std::vector<LabResult> results = lab_results(experiment, folder);
-  const std::string table = lab_table(experiment, results);
+  const std::string table = lab_table(experiment, results) + pair_table(results, refused);
   report::write_file(folder + "/lab.txt", table);
   report::write_file(folder + "/lab.csv", lab_csv(results));
   print_output("\n{}\nresults in {}/lab.csv\n", table, folder);
+  write_page(session, experiment, results, refused, folder);
   if (!options.check) return Exit::Ok;
   std::string flipped;
   for (const LabResult& result : results)
@@ -130,6 +146,9 @@ std::string stem_of(const std::string& config) {
 Exit run_lab(const Session& session, const LabOptions& options) {
   Experiment experiment = read_experiment(session.resources.lab_path(options.name));
   if (!options.config.empty()) experiment.config = options.config;
+  if (!options.size.empty()) experiment.size = options.size;
+  std::vector<RefusedPair> refused;
+  if (experiment.pairs) refused = add_pairs(session.resources, experiment);
   choose_arms(options.arms, experiment);
   drop_empty_arms(options.workloads, experiment);
   check_baselines(experiment);
@@ -144,7 +163,7 @@ Exit run_lab(const Session& session, const LabOptions& options) {
     if (const Exit exit = run_bench(session, bench_of(experiment, arm, options, folder)); exit != Exit::Ok)
       return exit;
   }
-  return conclude(experiment, options, folder);
+  return conclude(session, experiment, refused, options, folder);
 }
 
 Exit list_labs(const Session& session) {

@@ -33,6 +33,7 @@ class ExperimentReader {
     out.samples = uint32_t(table.integer("spp", out.samples, 1, 65536));
     out.bounces = uint32_t(table.integer("bounces", out.bounces, 1, 1000));
     out.ao_reach = uint32_t(table.integer("ao_reach", out.ao_reach, 0, 100));
+    out.pairs = table.flag("pairs", false);
     for (const Value* arm : table.tables("arm")) out.arms.push_back(read_arm(*arm, out.arms));
     table.finish();
     if (out.arms.empty() && !errors_.has_errors())

@@ -32,6 +32,7 @@ struct LabArm {
   std::optional<double> published;               // speed-up in the source: geometric mean
   std::optional<Band> expected;                  // of the geometric mean of the speed-ups
   std::optional<double> least;                   // no workload may have a smaller speed-up
+  bool is_pair = false;                          // pairs.h has made it of two others
   std::optional<uint32_t> ao_reach;              // none: that of the experiment
   std::vector<LabFigure> figures;
 };
@@ -41,6 +42,7 @@ struct Experiment {
   std::vector<std::string> settings, workloads;  // settings of all arms
   std::string size = "128x128";
   uint32_t samples = 1, bounces = 16, ao_reach = 0;
+  bool pairs = false;  // Arms with the same baseline run in pairs, too (pairs.h).
   std::vector<LabArm> arms;
 };
 

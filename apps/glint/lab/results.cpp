@@ -6,15 +6,20 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "apps/glint/bench/tables.h"
 #include "base/diagnostics.h"
 #include "report/files/csv_field.h"
 #include "report/files/run_record.h"
 #include "report/metrics/formula.h"
+#include "report/page/lab.h"
 #include "report/terminal/table.h"
 
 namespace glint::app {
+
+using Json = nlohmann::ordered_json;
+
 namespace {
 
 constexpr const char* kCycles = "sum(gpu.cycles)";
@@ -142,7 +147,10 @@ std::vector<LabResult> lab_results(const Experiment& experiment, const std::stri
   return out;
 }
 
-std::string lab_table(const Experiment& experiment, const std::vector<LabResult>& results) {
+std::string lab_table(const Experiment& experiment, const std::vector<LabResult>& all) {
+  std::vector<LabResult> results = all;
+  std::erase_if(results,
+                [](const LabResult& result) { return result.arm->is_pair; });  // pair_table() has them
   std::vector<std::string> head{"workload"};
   std::map<std::string, std::vector<std::string>> lines;  // by workload
   for (const LabResult& result : results) {
@@ -183,6 +191,37 @@ std::string lab_csv(const std::vector<LabResult>& results) {
                            row.figures[i] ? fmt::format("{}", *row.figures[i]) : "");
     }
   return out;
+}
+
+Json lab_json(const Experiment& experiment, const std::vector<LabResult>& results) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  const auto band = [](const std::optional<Band>& value) {
+    return value ? Json::array({value->low, value->high}) : Json();
+  };
+  Json arms = Json::array();
+  for (const LabResult& result : results) {
+    const LabArm& arm = *result.arm;
+    Json rows = Json::array(), figures = Json::array();
+    for (const LabRow& row : result.rows)
+      rows.push_back({{"workload", row.workload}, {"cycles", row.cycles}, {"speedup", number(row.speedup)}});
+    for (size_t i = 0; i < arm.figures.size(); ++i)
+      figures.push_back({{"name", arm.figures[i].name},
+                         {"here", number(result.figures[i])},
+                         {"published", number(arm.figures[i].published)},
+                         {"expected", band(arm.figures[i].expected)}});
+    arms.push_back({{"name", arm.name},
+                    {"against", arm.against},
+                    {"is_pair", arm.is_pair},
+                    {"here", number(result.geomean)},
+                    {"published", number(arm.published)},
+                    {"expected", band(arm.expected)},
+                    {"workloads", rows},
+                    {"figures", figures}});
+  }
+  return {{"kind", report::kLabKind},  {"schema", report::kLabSchema},  {"name", experiment.name},
+          {"title", experiment.title}, {"paper", experiment.source},    {"machine", experiment.config},
+          {"size", experiment.size},   {"samples", experiment.samples}, {"arms", arms},
+          {"refused", Json::array()}};
 }
 
 }  // namespace glint::app

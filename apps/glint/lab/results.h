@@ -1,6 +1,7 @@
 // Compares the arms of an experiment, workload by workload, and sets them beside what was published.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,5 +39,8 @@ std::vector<LabResult> lab_results(const Experiment& experiment, const std::stri
 // Return the results as a table for a terminal, and as CSV with one line for each arm and workload.
 std::string lab_table(const Experiment& experiment, const std::vector<LabResult>& results);
 std::string lab_csv(const std::vector<LabResult>& results);
+// Returns them as the document lab.json, which `glint report` draws (report/page/lab.h). Its list "refused"
+// is empty.
+nlohmann::ordered_json lab_json(const Experiment& experiment, const std::vector<LabResult>& results);
 
 }  // namespace glint::app

@@ -128,8 +128,9 @@ pipeline::GpuParams read_quietly(const Resources& resources, const std::string& 
 
 }  // namespace
 
-pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path) {
-  return read_quietly(resources, name_or_path, {});
+pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path,
+                                const std::vector<std::string>& settings) {
+  return read_quietly(resources, name_or_path, settings);
 }
 
 std::vector<std::string> names_of_whole_presets(const Resources& resources) {

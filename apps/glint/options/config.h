@@ -16,8 +16,9 @@ namespace glint::app {
 pipeline::GpuParams read_config(const Resources& resources, const std::string& name_or_path,
                                 const std::vector<std::string>& settings);
 
-// Reads a preset without any messages, to list it or to compare with it.
-pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path);
+// Reads a preset without warnings, to list it or to compare with it.
+pipeline::GpuParams read_preset(const Resources& resources, const std::string& name_or_path,
+                                const std::vector<std::string>& settings = {});
 
 // Returns the names of the presets that stand without a base, sorted.
 std::vector<std::string> names_of_whole_presets(const Resources& resources);

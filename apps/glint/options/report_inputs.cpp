@@ -12,6 +12,7 @@
 #include "base/diagnostics.h"
 #include "report/analytical/model_table.h"
 #include "report/files/run_record.h"
+#include "report/page/lab.h"
 #include "report/page/suite.h"
 
 namespace glint::app {
@@ -117,6 +118,12 @@ void add_named(const std::string& name, ReportInputs& out) {
   const bool is_run = fs::exists(path / "run.json");
   const bool has_models = fs::exists(path / "models.csv");
   if (fs::is_regular_file(path)) return add_models(name, name, "", out);
+  if (!is_run && fs::exists(path / "lab.json")) {
+    const std::string file = (path / "lab.json").string();
+    out.labs.push_back(report::read_lab(read_file(file), file));
+    out.labs.back()["source"] = name;
+    return;
+  }
   if (!is_run && fs::exists(path / "characterization.json"))
     return add_characterization(path / "characterization.json", "", out);
   if (!is_run && fs::exists(path / "metrics.csv")) return add_bench(name, out);
@@ -170,6 +177,7 @@ void add_suites(const ReportInputs& inputs, nlohmann::ordered_json& data) {
   data["collections"] = inputs.collections;
   data["characterizations"] = list(inputs.characterizations);
   data["models"] = list(inputs.models);
+  data["labs"] = inputs.labs;
 }
 
 }  // namespace glint::app

@@ -97,7 +97,7 @@ export function overview(runs) {
 
 // Makes the head of a page without runs. Its title is the document's.
 export function overviewOfSuites(data) {
-  const sources = [...new Set([...data.characterizations, ...data.models].map((one) => one.source))];
+  const sources = [...new Set([...data.characterizations, ...data.models, ...(data.labs ?? [])].map((one) => one.source))];
   return h("section", { id: "overview" }, h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, document.title.split(" – ")[0]), h("p", { class: "about" }, sources.join(", "))));
 }
 

@@ -1,4 +1,4 @@
-// Shows characterisations and models of whole suites. Their figures go into the sections that the page brings along with their tables.
+// Shows characterisations and models of whole suites, and experiments. Their figures go into the sections that the page brings along with their tables.
 // SPDX-License-Identifier: Apache-2.0
 import * as dendrogram from "../characterization/dendrogram.js";
 import * as kiviat from "../characterization/kiviat.js";
@@ -8,6 +8,7 @@ import * as scree from "../characterization/scree.js";
 import { h } from "../dom.js";
 import { figures } from "../figure.js";
 import { number, percent } from "../format.js";
+import * as speedups from "../lab/speedups.js";
 
 const keyNumber = (name, value, sub) => h("div", { class: "number" }, h("dt", {}, name), h("dd", { "data-value": value }, number(value)), h("dd", { class: "sub" }, sub));
 
@@ -23,6 +24,8 @@ function characterization(data, suffix) {
   ];
 }
 
+const lab = (data, suffix) => [figures([speedups.means, speedups.workloads], data, suffix)];
+
 const models = (data, suffix) => [figures([model.scatter, model.errors], data, suffix)];
 
 // The documents of `list` belong to the sections `id`, `id`-2, ... in this order. One that was not computed has only a line there.
@@ -36,4 +39,5 @@ function fill(list, id, make) {
 export function suites(data) {
   fill(data.characterizations, "characterization", characterization);
   fill(data.models, "models", models);
+  fill(data.labs, "lab", lab);
 }
