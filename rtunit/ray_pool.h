@@ -9,6 +9,7 @@
 #include "base/registry.h"
 #include "base/stats.h"
 #include "base/types.h"
+#include "memsys/address_space.h"
 #include "rtunit/traversal/ray_state.h"
 
 namespace glint::rt {
@@ -43,18 +44,21 @@ class RayPool {
   static constexpr std::string_view kNone = "none";  // Under this name warps stay as the core gave them.
   struct Context {
     stats::Group* stats = nullptr;  // parent for a policy's own statistics; may be null
-    uint32_t slots = 0;             // slots of the warp buffer
-    uint32_t rays = 0;              // Every id is below this number.
+    const mem::AddressSpace& memory;
+    uint32_t slots = 0;  // slots of the warp buffer
+    uint32_t rays = 0;   // Every id is below this number.
   };
   virtual ~RayPool() = default;
+  // Returns whether the policy asks for the treelets of nodes, so that structures must have them.
+  virtual bool needs_treelets() const { return false; }
   virtual void add(const WaitingRay&, Cycle /*now*/) {}
   // Writes the ids of the rays of the next warp to `ids` and returns their number. They take the lanes from 0
   // on, in this order.
   virtual uint32_t form(std::span<uint32_t, kLanes> /*ids*/, Cycle /*now*/) { return 0; }
+  // Tells the slot of the warp that form() has named last.
+  virtual void formed(uint32_t /*slot*/) {}
   // Returns whether the ray in `lane` goes back to the pool.
   virtual bool goes_back(const FormedWarp&, int /*lane*/) { return false; }
-  // Tells that all rays of a slot have stopped or gone back.
-  virtual void left(uint32_t /*slot*/) {}
   // Returns the cycle at which form() will name rays though nothing has changed, or kNever.
   virtual Cycle next_event(Cycle /*now*/) const { return kNever; }
 };

@@ -66,7 +66,8 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
     before_tests_.push_back([&stores](Cycle now) { stores.acknowledge(now); });
   }
   if (has_pool(params))
-    former_ = &add<WarpFormer>(params, context.ray_states, context.l1, buffer_, fetches_, walk_, stats_);
+    former_ = &add<WarpFormer>(params, context.memory, context.ray_states, context.l1, buffer_, fetches_,
+                               walk_, stats_);
   if (params.order.name != TraversalOrder::kDepthFirst)
     add<WalkOrder>(params.order.make({&stats_, context.memory}), context.memory, &stats_);
   auto stack = params.stack.make({});

@@ -17,9 +17,9 @@ constexpr LaneMask bit(int lane) {
 
 }  // namespace
 
-WarpFormer::WarpFormer(const Params& params, Address states, mem::L1Port& l1, WarpBuffer& buffer,
-                       FetchQueue& fetches, RayWalk& walk, RtStats& stats)
-    : policy_(params.pool.make({&stats, params.warps, params.pool_warps * kLanes})),
+WarpFormer::WarpFormer(const Params& params, const mem::AddressSpace& memory, Address states, mem::L1Port& l1,
+                       WarpBuffer& buffer, FetchQueue& fetches, RayWalk& walk, RtStats& stats)
+    : policy_(params.pool.make({&stats, memory, params.warps, params.pool_warps * kLanes})),
       moves_stacks_(params.pool_stacks),
       acknowledgement_(params.shortcuts.store_each_hit ? params.shortcuts.store_latency : 0),
       states_(states),
@@ -60,7 +60,8 @@ void WarpFormer::add_to_pool(uint32_t id, Cycle now) {
 
 void WarpFormer::form(Cycle now) {
   now_ = now;
-  while (const auto slot = buffer_.pop_completion()) policy_->left(*slot);
+  while (buffer_.pop_completion()) {
+  }
   has_changed_ = false;
   while (num_waiting_ && buffer_.has_room() && form_warp(now)) {
   }
@@ -86,6 +87,7 @@ bool WarpFormer::form_warp(Cycle now) {
     warp.threads[lane] = {from.warp_slot, int(ids[lane] % kLanes)};
     std::swap(warp.states[lane], home_of(ids[lane]));
   }
+  policy_->formed(slot);
   num_waiting_ -= count;
   ++stats_.formed;
   stats_.formed_rays += count;

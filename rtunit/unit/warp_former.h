@@ -46,8 +46,8 @@ struct PoolStats {
 class WarpFormer final : public RequestSource, public WalkHook {
  public:
   // `states` is the physical, line-aligned address of bytes() for the states of the rays that went back.
-  WarpFormer(const Params& params, Address states, mem::L1Port& l1, WarpBuffer& buffer, FetchQueue& fetches,
-             RayWalk& walk, RtStats& stats);
+  WarpFormer(const Params& params, const mem::AddressSpace& memory, Address states, mem::L1Port& l1,
+             WarpBuffer& buffer, FetchQueue& fetches, RayWalk& walk, RtStats& stats);
   static uint64_t bytes(const Params& params) { return uint64_t{params.pool_warps} * kLanes * kStateBytes; }
 
   bool has_room() const { return num_accepted_ < accepted_.size(); }
