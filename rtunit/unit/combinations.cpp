@@ -79,6 +79,7 @@ std::string RtUnit::who_needs_treelets(const Params& params) {
   const mem::AddressSpace none;
   if (params.order.make({nullptr, none})->needs_treelets())
     return chosen(TraversalOrder::kKind, params.order);
+  if (params.pool.make({nullptr, none, 1, 1})->needs_treelets()) return chosen(RayPool::kKind, params.pool);
   if (prefetches_treelets(params)) return chosen(Prefetcher::kKind, params.prefetch);
   return {};
 }

@@ -104,6 +104,23 @@ class Plugin(GlintTest):
         self.assertEqual(self.installed(*suite).returncode, 0)
         self.assertIn("1 of them complete", self.installed(*suite, "--resume").stdout + self.installed(*suite, "--resume").stderr)
 
+    def test_the_examples_of_rt_policies_work_from_outside(self):
+        folder = ROOT / "examples/policies"
+        text = (ROOT / "docs/howto/policy.md").read_text()
+        self.assertIn(f"```cpp\n{(folder / 'next_line.cpp').read_text()}```", text, "the page shows the file whole")
+        shutil.copytree(folder, self.folder / "policies")
+        build = self.configure_and_build(self.folder / "policies")
+        base = ["run", "SHIP_SH", "--size", "16x16", "--spp", "1"]
+        self.assertEqual(self.installed(*base, "--out", "base").returncode, 0)
+        for key, name, statistic in (("rt.prefetch", "next_line", r"rt\.next_line\.nodes,[1-9]"), ("rt.entry", "last_hit", r"rt\.entry\.verified,[1-9]"),
+                                     ("rt.scheduler", "same_region", r"rt\.same_region\.followed,[1-9]")):
+            with self.subTest(policy=name):
+                self.assertLess(len((folder / f"{name}.cpp").read_text().splitlines()), 150)
+                done = self.installed(*base, "--set", f"{key}={name}", "--plugin", build / f"{name}.so", "--out", name)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertRegex((self.folder / name / "stats.csv").read_text(), statistic)
+                self.assertEqual(*((self.folder / out / "image.pfm").read_bytes() for out in (name, "base")))
+
     def test_a_program_can_embed_the_libraries(self):
         folder = self.folder / "embed"
         folder.mkdir()

@@ -1,5 +1,6 @@
 // Tests that every registered ray pool keeps the promises of rtunit/ray_pool.h.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -97,7 +98,8 @@ PolicyChoice<RayPool> chosen(const std::string& name, const std::string& params)
 }
 
 uint64_t count_of(const std::string& stats, const std::string& name) {
-  const auto at = stats.find("\n" + name + "=");
+  const auto at =
+      std::min(stats.find("\n" + name + "="), stats.find("{" + name + "="));  // the first of a group
   return at == std::string::npos ? 0 : std::stoull(stats.substr(at + name.size() + 2));
 }
 
