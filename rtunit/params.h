@@ -11,6 +11,7 @@
 #include "rtunit/any_hit_mode.h"
 #include "rtunit/child_order.h"
 #include "rtunit/coalescer.h"
+#include "rtunit/node_test.h"
 #include "rtunit/prefetcher.h"
 #include "rtunit/ray_entry.h"
 #include "rtunit/ray_pool.h"
@@ -77,6 +78,7 @@ struct Params {
   // cycle; Intel Xe-HPG: 12 and 1) but no latencies.
   PipelineParams box{13, 1, 1}, triangle{37, 2, 1};
   PipelineParams transform{8, 1, 1};  // The latency is Vulkan-Sim's for an instance leaf
+  PolicyChoice<NodeTest> node_test{"by_node"};
   PolicyChoice<RayScheduler> scheduler{"oldest_first"};
   PolicyChoice<AnyHitMode> any_hit{"immediate"};
   PolicyChoice<ChildOrder> child_order{"near_first"};
@@ -139,6 +141,8 @@ struct Params {
   }
   static ParamList choice_params() {
     return {
+        policy(&Params::node_test, "node_test",
+               "Selects how many starts of its pipeline the test of a node takes."),
         policy(&Params::scheduler, "scheduler", "Selects which warp of the unit sends a node request."),
         policy(&Params::any_hit, "any_hit",
                "Selects when intersection and any-hit shaders run: at each candidate, or over a table after "

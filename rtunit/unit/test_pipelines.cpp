@@ -9,7 +9,7 @@
 namespace glint::rt {
 
 TestPipelines::TestPipelines(const Params& params, const mem::AddressSpace& memory, RayWalk& walk)
-    : num_lanes_(size_t{params.slots()} * kLanes), memory_(memory), walk_(walk) {
+    : num_lanes_(size_t{params.slots()} * kLanes), test_(params.node_test.make({memory})), walk_(walk) {
   add(params.box);
   add(params.triangle);
   add(params.transform);
@@ -21,17 +21,11 @@ Pipe TestPipelines::add(const PipelineParams& params) {
 }
 
 void TestPipelines::push(const Read& read, uint32_t slot, LaneMask lanes) {
-  const uint8_t starts = starts_of(read);
+  const uint8_t starts = read.pipe <= kTransformPipe ? test_->starts(read.what) : uint8_t{1};
   Pipeline& pipe = pipes_[read.pipe];
   pipe.waiting.push({slot, lanes, starts, starts});
   pipe.num_waiting += num_lanes(lanes);
   with_waiting_ |= 1u << read.pipe;
-}
-
-uint8_t TestPipelines::starts_of(const Read& read) const {
-  if (read.pipe != kTrianglePipe || read.what.kind != NodeKind::Triangle) return 1;
-  const auto leaf = load<TriangleLeaf>(memory_.find(read.what.address, sizeof(TriangleLeaf)));
-  return leaf.count > 1 ? 2 : 1;
 }
 
 void TestPipelines::end_tests(Cycle now) {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "memsys/address_space.h"
@@ -47,7 +48,7 @@ class TestPipelines {
   struct Waiting {
     uint32_t slot = 0;
     LaneMask lanes = 0;
-    uint8_t starts = 1;       // A leaf of two triangles needs two.
+    uint8_t starts = 1;       // NodeTest::starts()
     uint8_t starts_left = 1;  // of the next lane
   };
   struct Running {
@@ -65,12 +66,11 @@ class TestPipelines {
     uint32_t started = 0;  // tests started in the interval that began at interval_start
     bool is_used = false;  // interval_start is valid
   };
-  uint8_t starts_of(const Read& read) const;
   void end_tests(Cycle now);
   void start_tests(Cycle now, uint32_t pipe);
 
   const size_t num_lanes_;
-  const mem::AddressSpace& memory_;
+  const std::unique_ptr<NodeTest> test_;
   RayWalk& walk_;
   std::vector<Pipeline> pipes_;  // by Pipe
   uint32_t with_waiting_ = 0;    // bit i: tests wait in pipes_[i]
