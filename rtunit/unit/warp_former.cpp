@@ -9,13 +9,6 @@
 #include "base/num_lanes.h"
 
 namespace glint::rt {
-namespace {
-
-constexpr LaneMask bit(int lane) {
-  return LaneMask{1} << lane;
-}
-
-}  // namespace
 
 WarpFormer::WarpFormer(const Params& params, const mem::AddressSpace& memory, Address states, mem::L1Port& l1,
                        WarpBuffer& buffer, FetchQueue& fetches, RayWalk& walk, RtStats& stats)
@@ -103,14 +96,14 @@ void WarpFormer::enter(uint32_t slot, int lane, Cycle now) {
   stats_.waited += waited;
   if (!(from.returned >> id % kLanes & 1)) return walk_.start(slot, lane, now, waited);
   warp.states[size_t(lane)].unit_cycles += waited;
-  warp.to_load |= bit(lane);
+  warp.to_load |= LaneMask{1} << lane;
   walk_.start_part(slot, lane, now);
 }
 
 bool WarpFormer::detour(uint32_t slot, int lane, Cycle) {
   Formed& warp = formed_[slot];
-  if (!(warp.to_load & bit(lane))) return false;
-  warp.to_load &= ~bit(lane);
+  if (!(warp.to_load >> lane & 1)) return false;
+  warp.to_load &= ~(LaneMask{1} << lane);
   moves_.push({warp.id[size_t(lane)], slot, uint8_t(lane), sectors_of(warp.states[size_t(lane)]), true});
   return true;
 }
@@ -119,14 +112,14 @@ bool WarpFormer::takes_back(uint32_t slot, int lane, Cycle now) {
   Formed& warp = formed_[slot];
   const BufferSlot& at = buffer_[slot];
   RayState& ray = warp.states[size_t(lane)];
-  if (!(warp.visited & bit(lane))) return false;
-  warp.visited &= ~bit(lane);
+  if (!(warp.visited >> lane & 1)) return false;
+  warp.visited &= ~(LaneMask{1} << lane);
   if (ray.status != RayStatus::Traversing) return false;
   if (!policy_->goes_back({slot, at.mask & ~at.stopped, num_waiting_, warp.states}, lane)) return false;
   const uint32_t id = warp.id[size_t(lane)];
   ray.unit_cycles += now - at.arrived;
   moves_.push({id, slot, uint8_t(lane), sectors_of(ray), false});
-  of(id).returned |= bit(int(id % kLanes));
+  of(id).returned |= LaneMask{1} << id % kLanes;
   ++stats_.returned;
   std::swap(ray, home_of(id));
   add_to_pool(id, now);
