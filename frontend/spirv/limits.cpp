@@ -32,7 +32,7 @@ struct Place {
 };
 
 // Holds what limits apply to.
-struct Survey {
+struct SizeSurvey {
   struct Variable {
     uint64_t bytes = 0;
     isa::Line line;  // of the first instruction that uses it
@@ -61,7 +61,7 @@ uint64_t times(uint64_t a, uint64_t b) {
 
 class Reader {
  public:
-  Survey read(const std::vector<uint32_t>& words) {
+  SizeSurvey read(const std::vector<uint32_t>& words) {
     for (size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
       const size_t length = words[at] >> 16;
       if (length == 0 || at + length > words.size()) break;  // The validator says what is wrong.
@@ -129,20 +129,20 @@ class Reader {
         v->second.line = lines.line();
   }
 
-  Survey out_;
-  Survey::Function* function_ = nullptr;
+  SizeSurvey out_;
+  SizeSurvey::Function* function_ = nullptr;
   std::vector<uint32_t> around_;             // of each construct around the present block: the loops up to it
   std::map<uint32_t, size_t> depth_before_;  // by merge block: the depth around its construct
 };
 
 // Returns the deepest place of a function with what it calls. A function that calls itself is refused
 // elsewhere, and its inner call is not followed.
-Place deepest_of(const Survey& module, Kind kind, uint32_t id, std::map<uint32_t, Place>& known) {
+Place deepest_of(const SizeSurvey& module, Kind kind, uint32_t id, std::map<uint32_t, Place>& known) {
   if (const auto found = known.find(id); found != known.end()) return found->second;
   const auto function = module.functions.find(id);
   if (function == module.functions.end()) return {};
   Place deepest = known[id] = function->second.deepest[kind];
-  for (const Survey::Call& call : function->second.calls) {
+  for (const SizeSurvey::Call& call : function->second.calls) {
     Place inner = deepest_of(module, kind, call.callee, known);
     inner.depth[kind] += call.at.depth[kind];
     if (inner.depth[kind] > deepest.depth[kind]) deepest = inner;
@@ -150,7 +150,7 @@ Place deepest_of(const Survey& module, Kind kind, uint32_t id, std::map<uint32_t
   return known[id] = deepest;
 }
 
-Place deepest_of(const Survey& module, Kind kind) {
+Place deepest_of(const SizeSurvey& module, Kind kind) {
   std::map<uint32_t, Place> known;
   Place deepest;
   for (const auto& [id, function] : module.functions)
@@ -161,17 +161,17 @@ Place deepest_of(const Survey& module, Kind kind) {
 
 // Returns how many calls lie in each other below a function. A function that calls itself is refused
 // elsewhere.
-uint32_t call_depth_of(const Survey& module, uint32_t id, std::map<uint32_t, uint32_t>& known) {
+uint32_t call_depth_of(const SizeSurvey& module, uint32_t id, std::map<uint32_t, uint32_t>& known) {
   if (const auto found = known.find(id); found != known.end()) return found->second;
   uint32_t depth = known[id] = 0;
   if (const auto function = module.functions.find(id); function != module.functions.end())
-    for (const Survey::Call& call : function->second.calls)
+    for (const SizeSurvey::Call& call : function->second.calls)
       depth = std::max(depth, 1 + call_depth_of(module, call.callee, known));
   return known[id] = depth;
 }
 
 // Returns the depth of calls, and the line of the first one that lies deeper than kDeepestCalls.
-std::pair<uint32_t, isa::Line> deepest_call(const Survey& module) {
+std::pair<uint32_t, isa::Line> deepest_call(const SizeSurvey& module) {
   std::map<uint32_t, uint32_t> depth;
   uint32_t at = 0;  // an id
   for (const auto& [id, function] : module.functions)
@@ -179,8 +179,8 @@ std::pair<uint32_t, isa::Line> deepest_call(const Survey& module) {
   const uint32_t deepest = depth[at];
   isa::Line line;
   for (uint32_t i = 0; i <= kDeepestCalls && i < deepest; ++i) {
-    const std::vector<Survey::Call>& calls = module.functions.at(at).calls;
-    const auto next = std::find_if(calls.begin(), calls.end(), [&](const Survey::Call& call) {
+    const std::vector<SizeSurvey::Call>& calls = module.functions.at(at).calls;
+    const auto next = std::find_if(calls.begin(), calls.end(), [&](const SizeSurvey::Call& call) {
       return depth[call.callee] + 1 == depth[at];
     });
     line = next->at.line;
@@ -210,7 +210,7 @@ uint64_t largest_variable(const std::vector<uint32_t>& words) {
 
 void check_limits(const std::vector<uint32_t>& words, const std::string& name, uint32_t deepest) {
   Reader reader;
-  const Survey module = reader.read(words);
+  const SizeSurvey module = reader.read(words);
   std::string message;
   const auto add = [&](const isa::Line& line, const std::string& text) {
     const bool known = line.line != 0 && line.file < reader.lines.files.size();
