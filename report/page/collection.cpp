@@ -16,10 +16,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kMainMetrics[] = {"cycles",       "thread_ipc", "simt_efficiency", "l1d_miss_rate",
                                         "l2_miss_rate", "dram_util",  "rt_occupancy",    "rt_efficiency"};
 
-std::string text(const Json& one, const char* key) {
-  return escaped(one.at(key).get<std::string>());
-}
-
 const Json* run_of(const Json& data, const Json& point) {
   for (const Json& run : data["runs"])
     if (run["directory"] == point["directory"]) return &run;
@@ -44,12 +40,12 @@ std::string points_table(const Json& data, const Json& one) {
     for (const Json& metric : data["metric_docs"])
       if (metric["name"] == name)
         head += head_cell(fmt::format("<code>{}</code>", name),
-                          fmt::format("{} ({})", text(metric, "doc"), text(metric, "unit")));
+                          fmt::format("{} ({})", escaped_text(metric, "doc"), escaped_text(metric, "unit")));
   for (const Json& point : one["points"]) {
     const Json* const run = run_of(data, point);
     if (!run) continue;
-    rows += fmt::format("<tr><th scope=\"row\"><a href=\"{}\">{}</a></th>", text(point, "link"),
-                        text(point, "name"));
+    rows += fmt::format("<tr><th scope=\"row\"><a href=\"{}\">{}</a></th>", escaped_text(point, "link"),
+                        escaped_text(point, "name"));
     for (const Json& key : one["keys"])
       rows += fmt::format("<td class=\"n\">{}</td>", shown(value_of(*run, key)));
     for (const char* name : kMainMetrics)
@@ -65,8 +61,8 @@ std::string points_table(const Json& data, const Json& one) {
 std::string failed_table(const Json& one) {
   std::string rows;
   for (const Json& failed : one["failed"])
-    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"doc\">{}</td></tr>\n", text(failed, "name"),
-                        text(failed, "reason"));
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"doc\">{}</td></tr>\n",
+                        escaped_text(failed, "name"), escaped_text(failed, "reason"));
   return fmt::format(
       "<div class=\"scroll\"><table class=\"metrics\" data-table=\"failed\"><thead><tr><th "
       "scope=\"col\">Run</th><th scope=\"col\">Why it is not here</th></tr></thead><tbody>\n"
@@ -85,12 +81,12 @@ std::string section(const Json& data, const Json& one, size_t number) {
     out += fmt::format(
                "<p class=\"lead\">{} of {} points of <code>{}</code> are complete. Each name leads to the "
                "point's own report.</p>\n",
-               points, points + failed, text(one, "source")) +
+               points, points + failed, escaped_text(one, "source")) +
            points_table(data, one);
   else
     out += fmt::format(
         "<p class=\"lead\"><code>{}</code> has {} not in its metrics.csv, and so not on this page.</p>\n",
-        text(one, "source"), failed == 1 ? "1 run that is" : fmt::format("{} runs that are", failed));
+        escaped_text(one, "source"), failed == 1 ? "1 run that is" : fmt::format("{} runs that are", failed));
   return out + (failed ? failed_table(one) : "") + "</section>\n";
 }
 

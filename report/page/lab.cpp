@@ -16,13 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text(const Json& one, const char* key) {
-  return escaped(one.at(key).get<std::string>());
-}
-std::string th(const std::string& content, bool is_number) {
+std::string column_head(const std::string& content, bool is_number) {
   return fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"n\"" : "", content);
 }
-std::string td(const std::string& content) {
+std::string number_cell(const std::string& content) {
   return fmt::format("<td class=\"n\">{}</td>", content);
 }
 std::string factor(const Json& value) {
@@ -43,33 +40,35 @@ std::string table(const char* kind, const std::string& title, const std::string&
 
 std::string comparison_row(const std::string& arm, const std::string& what, const Json& one) {
   return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>{}{}{}</tr>\n", arm, what,
-                     td(factor(one.at("here"))), td(factor(one.at("published"))),
-                     td(band(one.at("expected"))));
+                     number_cell(factor(one.at("here"))), number_cell(factor(one.at("published"))),
+                     number_cell(band(one.at("expected"))));
 }
 
 // Returns the geometric means and figures of all arms that have a baseline and are no pair.
 std::string comparison(const Json& lab) {
   std::string rows;
   for (const Json& arm : lab.at("arms")) {
-    const std::string name = text(arm, "name"), against = text(arm, "against");
+    const std::string name = escaped_text(arm, "name"), against = escaped_text(arm, "against");
     if (against.empty() || arm.at("is_pair").get<bool>()) continue;
     rows += comparison_row(name, "speed-up against " + against, arm);
-    for (const Json& figure : arm.at("figures")) rows += comparison_row(name, text(figure, "name"), figure);
+    for (const Json& figure : arm.at("figures"))
+      rows += comparison_row(name, escaped_text(figure, "name"), figure);
   }
   if (rows.empty()) return "";
-  return table(
-      "lab-arms", "Here and in the paper",
-      th("Arm", false) + th("What", false) + th("here", true) + th("published", true) + th("expected", true),
-      rows);
+  return table("lab-arms", "Here and in the paper",
+               column_head("Arm", false) + column_head("What", false) + column_head("here", true) +
+                   column_head("published", true) + column_head("expected", true),
+               rows);
 }
 
 // Returns the speed-up of each arm on each workload. An arm without a baseline shows its cycles.
 std::string by_workload(const Json& lab) {
-  std::string head = th("Workload", false), rows;
+  std::string head = column_head("Workload", false), rows;
   std::vector<std::string> workloads;
   for (const Json& arm : lab.at("arms")) {
     if (arm.at("is_pair").get<bool>()) continue;
-    head += th(text(arm, "name") + (text(arm, "against").empty() ? " (cycles)" : ""), true);
+    head += column_head(escaped_text(arm, "name") + (escaped_text(arm, "against").empty() ? " (cycles)" : ""),
+                        true);
     for (const Json& row : arm.at("workloads"))
       if (const std::string name = row.at("workload");
           std::find(workloads.begin(), workloads.end(), name) == workloads.end())
@@ -83,7 +82,7 @@ std::string by_workload(const Json& lab) {
       for (const Json& row : arm.at("workloads"))
         if (row.at("workload") == workload)
           cell = row.at("speedup").is_null() ? shown(row.at("cycles")) : factor(row.at("speedup"));
-      rows += td(cell);
+      rows += number_cell(cell);
     }
     rows += "</tr>\n";
   }
@@ -99,7 +98,7 @@ std::string pair_cell(const Json& lab, const std::string& a, const std::string& 
   for (const Json& pair : lab.at("refused"))
     if ((pair.at("first") == a && pair.at("second") == b) ||
         (pair.at("first") == b && pair.at("second") == a))
-      return fmt::format("<abbr title=\"{}\">refused</abbr>", text(pair, "reason"));
+      return fmt::format("<abbr title=\"{}\">refused</abbr>", escaped_text(pair, "reason"));
   return "–";
 }
 
@@ -112,17 +111,17 @@ std::string pairs(const Json& lab) {
     if (!is_pair && !arm.at("against").get<std::string>().empty()) names.push_back(arm.at("name"));
   }
   if (!has_pairs) return "";
-  std::string head = th("", false), rows;
-  for (const std::string& name : names) head += th(escaped(name), true);
+  std::string head = column_head("", false), rows;
+  for (const std::string& name : names) head += column_head(escaped(name), true);
   for (const std::string& a : names) {
     rows += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(a));
-    for (const std::string& b : names) rows += td(pair_cell(lab, a, b));
+    for (const std::string& b : names) rows += number_cell(pair_cell(lab, a, b));
     rows += "</tr>\n";
   }
   std::string reasons;
   for (const Json& pair : lab.at("refused"))
-    reasons += fmt::format("<li>{} and {}: {}</li>\n", text(pair, "first"), text(pair, "second"),
-                           text(pair, "reason"));
+    reasons += fmt::format("<li>{} and {}: {}</li>\n", escaped_text(pair, "first"),
+                           escaped_text(pair, "second"), escaped_text(pair, "reason"));
   return table("lab-pairs", "In pairs: geometric means of the speed-ups", head, rows) +
          (reasons.empty() ? "" : "<ul class=\"note\">\n" + reasons + "</ul>\n");
 }
@@ -131,8 +130,9 @@ std::string section(const Json& lab, size_t number) {
   return fmt::format(
              "<section id=\"lab{}\">\n<h2>{}</h2>\n<p class=\"lead\">{}. Machine <code>{}</code>, {} pixels, "
              "{} spp.</p>\n<div class=\"drawn\"></div>\n",
-             number ? fmt::format("-{}", number + 1) : "", text(lab, "title"), text(lab, "paper"),
-             text(lab, "machine"), text(lab, "size"), shown(lab.at("samples"))) +
+             number ? fmt::format("-{}", number + 1) : "", escaped_text(lab, "title"),
+             escaped_text(lab, "paper"), escaped_text(lab, "machine"), escaped_text(lab, "size"),
+             shown(lab.at("samples"))) +
          comparison(lab) + pairs(lab) + by_workload(lab) + "</section>\n";
 }
 

@@ -29,6 +29,10 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
+std::string escaped_text(const nlohmann::ordered_json& object, const char* key) {
+  return escaped(object.at(key).get<std::string>());
+}
+
 std::string prose(std::string_view text) {
   std::string out;
   bool in_code = false;

@@ -10,6 +10,9 @@ namespace glint::report {
 // Returns a text as HTML shows it, also between quotes.
 std::string escaped(std::string_view text);
 
+// Returns the text that an object has under a key, as HTML shows it.
+std::string escaped_text(const nlohmann::ordered_json& object, const char* key);
+
 // Returns the text of a description, in which words between backquotes become code.
 std::string prose(std::string_view text);
 
