@@ -23,6 +23,10 @@ using glm::dvec3;
 
 constexpr double kTolerance = 1e-5;  // share of the copy's largest extent: files have 5 to 7 digits
 constexpr double kFloatSteps = 8;    // float steps at the largest coordinate, for copies far from the origin
+// An entry of a matrix below this share of the largest one is taken for zero: positions of float do not
+// resolve it, and it would tilt the normals of upright walls, whose sign decides whether a ray towards the
+// zenith starts.
+constexpr double kEntryNoise = 0x1p-21;
 constexpr double kNormalCosine = 0.995;  // Files round normals to three or four digits.
 // A body is flat when the determinant of its matrix, scaled to trace 1, is below this value.
 constexpr double kFlat = 1e-9;
@@ -94,6 +98,16 @@ std::optional<dmat3> linear_part(const Model& from, const Model& to, const dvec3
   }
   if (determinant(c) < kFlat * scale * scale * scale) return {};
   return d * inverse_of(c);
+}
+
+// Sets entries that are only noise of the fit to zero.
+void drop_noise(dmat3& m) {
+  double largest = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) largest = std::max(largest, std::fabs(m[c][r]));
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (std::fabs(m[c][r]) < kEntryNoise * largest) m[c][r] = 0;
 }
 
 bool moves_onto(const Model& from, const Model& to, const Affine& m) {
@@ -181,8 +195,9 @@ uint64_t shape_hash(const Model& model) {
 std::optional<Affine> affine_between(const Model& from, const Model& to) {
   if (from.vertices.empty() || from.vertices.size() != to.vertices.size() || from.indices.empty()) return {};
   const dvec3 p = centre_of(from), q = centre_of(to);
-  const std::optional<dmat3> linear = linear_part(from, to, p, q);
+  std::optional<dmat3> linear = linear_part(from, to, p, q);
   if (!linear || determinant(*linear) == 0 || !std::isfinite(determinant(*linear))) return {};
+  drop_noise(*linear);
   Affine out;
   for (size_t r = 0; r < 3; ++r) {
     const dvec3 linear_row = row(*linear, r);

@@ -52,6 +52,19 @@ TEST_CASE("the matrix between a body and its copy is the one that moved it") {
   for (size_t i = 0; i < 12; ++i) CHECK(std::fabs((*found)[i / 4][i % 4] - kMatrix[i / 4][i % 4]) < 1e-5f);
 }
 
+TEST_CASE("the matrix of a turned copy has exact zeros, so that its upright walls stay upright") {
+  Model copy = pyramid();
+  Placement placement;
+  placement.translation = {12.3f, 4.5f, -67.8f};
+  placement.rotation_y = 33;
+  placement.scale = 1.7f;
+  place(copy, placement);
+  const auto found = affine_between(pyramid(), copy);
+  REQUIRE(found);
+  for (const auto& [row, column] : {std::pair<size_t, size_t>{1, 0}, {1, 2}, {0, 1}, {2, 1}})
+    CHECK((*found)[row][column] == 0);
+}
+
 TEST_CASE("a flat body is moved with its normal, a line is not moved at all") {
   Model flat = pyramid();
   flat.vertices[3].position = {2, 3, 0};
