@@ -1,52 +1,62 @@
-# glint_library(name FLOORS subfolder... DEPENDS folder... LINKS target... POLICIES subfolder... EXCEPT file...)
+# glint_library(name FLOORS subfolder... DEPENDS folder... LINKS target... POLICIES subfolder...)
 #
 # Makes one static library of a folder, alias glint::<name>, with the project's flags and header checks. Its sources
 # and headers are the files of its folder and of its FLOORS, so a file is found where it lies and is in no list.
 # DEPENDS are folders of ours. LINKS are libraries from packages; the folder's users see them only if its headers
-# include them. POLICIES are folders in which each file registers one policy and nothing else refers to it.
-# EXCEPT are files that the caller adds under conditions of its own. PRECOMPILE, in `base`, are its headers
-# that are parsed once for all folders (glint_precompile); headers of other folders cost more to write and to load than
-# to parse. COLD says that the folder takes no part in the machines' loops: it is optimised for a quick build. With
-# GLINT_UNITY several files of a folder are compiled at a time, except policies: names in anonymous namespaces are
-# therefore unique within a folder.
+# include them. POLICIES are folders in which each file registers one policy and nothing else refers to it; the archive
+# of the rest is then glint_<name>_mechanism. PRECOMPILE, in `base`, are its headers that are parsed once for all folders
+# (glint_precompile); headers of other folders cost more to write and to load than to parse. COLD says that the folder
+# takes no part in the machines' loops: it is optimised for a quick build. With GLINT_UNITY several files of a folder are
+# compiled at a time, except policies: names in anonymous namespaces are therefore unique within a folder.
 function(glint_library name)
-  cmake_parse_arguments(ARG "COLD" "" "FLOORS;DEPENDS;LINKS;POLICIES;EXCEPT;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "" "FLOORS;DEPENDS;LINKS;POLICIES;PRECOMPILE" ${ARGN})
   list(TRANSFORM ARG_DEPENDS PREPEND glint::)
   glint_glob(sources *.cpp . ${ARG_FLOORS})
   glint_glob(headers *.h . ${ARG_FLOORS} ${ARG_POLICIES})
-  list(TRANSFORM ARG_EXCEPT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  list(REMOVE_ITEM sources ${ARG_EXCEPT})
-  add_library(glint_${name} STATIC ${sources})
-  add_library(glint::${name} ALIAS glint_${name})
-  target_sources(glint_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+  set(archive glint_${name})
+  if(ARG_POLICIES)
+    set(archive glint_${name}_mechanism)
+    glint_policies(${name} "${ARG_POLICIES}")
+  endif()
+  add_library(${archive} STATIC ${sources})
+  glint_export(${archive})
+  target_sources(${archive} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
   set_property(GLOBAL APPEND PROPERTY GLINT_HEADERS ${headers})
-  set_property(GLOBAL APPEND PROPERTY GLINT_LIBRARIES glint_${name})
-  set_target_properties(glint_${name} PROPERTIES EXPORT_NAME ${name})
-  target_compile_features(glint_${name} PUBLIC cxx_std_20)
-  set_target_properties(glint_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
-  target_link_libraries(glint_${name} PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:glint_warnings>)
+  target_compile_features(${archive} PUBLIC cxx_std_20)
+  set_target_properties(${archive} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
+  target_link_libraries(${archive} PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:glint_warnings>)
   if(ARG_PRECOMPILE)
-    glint_precompile(glint_${name} ${ARG_PRECOMPILE})
+    glint_precompile(${archive} ${ARG_PRECOMPILE})
   else()
-    target_precompile_headers(glint_${name} REUSE_FROM glint_base)
+    target_precompile_headers(${archive} REUSE_FROM glint_base)
   endif()
   if(ARG_COLD)
-    glint_cold(glint_${name})
+    glint_cold(${archive})
   else()
-    set_target_properties(glint_${name} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${archive} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   endif()
-  if(ARG_POLICIES)
-    glint_glob(policies *.cpp ${ARG_POLICIES})
-    add_library(glint_${name}_policies STATIC ${policies})
-    target_include_directories(glint_${name}_policies PRIVATE ${PROJECT_SOURCE_DIR})
-    target_precompile_headers(glint_${name}_policies REUSE_FROM glint_base)
-    target_link_libraries(glint_${name}_policies PUBLIC ${ARG_DEPENDS} ${ARG_LINKS} PRIVATE $<BUILD_INTERFACE:glint_warnings>)
-    # The whole archive is linked, because a static library drops objects that nothing refers to, and with them the registrations.
-    set_property(GLOBAL APPEND PROPERTY GLINT_LIBRARIES glint_${name}_policies)
-    set_target_properties(glint_${name}_policies PROPERTIES EXPORT_NAME ${name}_policies)
-    add_library(glint::${name}_policies ALIAS glint_${name}_policies)
-    target_link_libraries(glint_${name} PUBLIC "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint::${name}_policies>")
-  endif()
+endfunction()
+
+# glint_policies(name subfolders) makes glint_<name> of two archives: the policies, of which every object is linked,
+# because a static library drops objects that nothing refers to, and with them the registrations; and behind them on the
+# linker's command line the mechanism, so that a policy may call any function of its folder.
+function(glint_policies name subfolders)
+  glint_glob(files *.cpp ${subfolders})
+  add_library(glint_${name}_policies STATIC ${files})
+  glint_export(glint_${name}_policies)
+  target_precompile_headers(glint_${name}_policies REUSE_FROM glint_base)
+  target_link_libraries(glint_${name}_policies PUBLIC glint::${name}_mechanism PRIVATE $<BUILD_INTERFACE:glint_warnings>)
+  add_library(glint_${name} INTERFACE)
+  glint_export(glint_${name})
+  target_link_libraries(glint_${name} INTERFACE "$<LINK_LIBRARY:WHOLE_ARCHIVE,glint::${name}_policies>" glint::${name}_mechanism)
+endfunction()
+
+# glint_export(target) gives the target glint_<name> the alias glint::<name>, under which it is installed, too.
+function(glint_export target)
+  string(REPLACE glint_ "" name ${target})
+  add_library(glint::${name} ALIAS ${target})
+  set_property(GLOBAL APPEND PROPERTY GLINT_LIBRARIES ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
 endfunction()
 
 # glint_glob(variable pattern subfolder...) lists the files below the caller's folder that match; "." is the folder itself.

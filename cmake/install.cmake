@@ -5,7 +5,7 @@ include(GNUInstallDirs)
 
 set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/glint)
 get_property(libraries GLOBAL PROPERTY GLINT_LIBRARIES)
-install(TARGETS ${libraries} glint_report_rows EXPORT glint
+install(TARGETS ${libraries} EXPORT glint
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/glint COMPONENT dev
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint COMPONENT dev)
 install(EXPORT glint FILE glint-targets.cmake NAMESPACE glint:: DESTINATION ${cmake_dir} COMPONENT dev)
