@@ -3,6 +3,9 @@
 #version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_GOOGLE_include_directive : require
+#ifndef MATERIAL
+#define MATERIAL 0  // pipeline.toml gives each wall its own.
+#endif
 #include "path.glsl"
 layout(location = 0) rayPayloadInEXT Path path;
 hitAttributeEXT vec2 weights;

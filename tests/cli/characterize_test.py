@@ -6,15 +6,13 @@ import html
 import json
 import re
 import shutil
-import subprocess
 import sys
 import xml.etree.ElementTree
 
 import glint_case
-from glint_case import ROOT, GlintTest
+from glint_case import CHROMIUM, GlintTest, ROOT
 
 METRICS = ROOT / "tests/unit/characterize/data/metrics.csv"
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 SKIPPED = 77
 
 
@@ -208,8 +206,7 @@ class Browser(Report):
           HTMLAnchorElement.prototype.click = function () { last.text().then((text) => { kept[this.download] = text; show(); }); };
           document.querySelectorAll("figcaption button").forEach((button) => button.click());"""
         self.write("page.html", glint_case.when_ready(self.page(*named), keep))
-        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
-                               "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/page.html"], capture_output=True, text=True, timeout=280)
+        done = glint_case.opened(self.folder / "page.html")
         console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
         self.assertIn('data-ready="yes"', done.stdout, "\n".join(console))
         self.assertEqual(console, [])

@@ -17,9 +17,8 @@ import sys
 import tempfile
 
 import glint_case
-from glint_case import GLINT, GlintTest
+from glint_case import CHROMIUM, GLINT, GlintTest
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 SMALL = ["--size", "24x16", "--spp", "1"]
 TIMED = ["cycles", "active_cycles", "l1_misses"]
@@ -329,9 +328,7 @@ class Browser(WatchedRun):
         script = ("const c = document.querySelector('.heat-run'); const r = c.querySelector('input[type=range]'); r.value = 20; r.dispatchEvent(new Event('input'));"
                   "c.querySelector('tr[data-map=rays] button').click();")
         self.write("page.html", glint_case.when_ready(self.page, script + keep))
-        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr",
-                               "--window-size=1280,900", "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/page.html"],
-                              capture_output=True, text=True, timeout=280)
+        done = glint_case.opened(self.folder / "page.html")
         self.assertEqual([line for line in done.stderr.splitlines() if "CONSOLE" in line], [])
         self.assertIn('data-ready="yes"', done.stdout)
         slices, heat, picture = json.loads(html.unescape(re.search(r'data-kept="([^"]*)"', done.stdout).group(1)))

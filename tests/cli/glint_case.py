@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import unittest
 import zlib
 
 GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
 class GlintTest(unittest.TestCase):
@@ -117,6 +119,14 @@ def when_ready(page, script):
     """Returns the report with a script of a test in it, which runs after the page's own."""
     wait = f'const go = () => {{ {script} }}; const wait = () => (document.documentElement.dataset.ready === "yes" ? go() : setTimeout(wait, 20)); wait();'
     return page.replace("</body>", f"<script>(() => {{ {wait} }})();</script></body>")
+
+
+def opened(page):
+    """Returns what Chromium prints of a page's file: the document after its scripts as stdout, and the console in stderr. All frames are drawn
+    before the document is printed, because a figure is drawn in the frame after its place is known."""
+    command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={page.parent}/profile", "--enable-logging=stderr", "--window-size=1280,900",
+               "--run-all-compositor-stages-before-draw", "--virtual-time-budget=20000", "--dump-dom", page.as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, timeout=280)
 
 
 def main():

@@ -22,6 +22,11 @@ def npy(path):
     return data[10:10 + length].decode(), data[10 + length:]
 
 
+def shaders_of(example):
+    """Returns the shaders of an example. Files that shaders include have no stage in their names."""
+    return [p for p in sorted((ROOT / "examples" / example).iterdir()) if p.suffix not in (".toml", ".obj", ".glsl")]
+
+
 class PipelineTest(GlintTest):
     def run_file(self, what, *arguments):
         done = self.glint("run", what, "--mode", "functional", "--out", "out", *arguments)
@@ -62,9 +67,9 @@ class Examples(PipelineTest):
 
     def test_every_example_has_its_page_and_its_test(self):
         names = {p.name for p in (ROOT / "examples").iterdir() if p.is_dir()}
-        self.assertEqual(names, {*PICTURES, "reduction", "notebooks"})  # tests/python runs the notebooks
+        self.assertEqual(names, {*PICTURES, "reduction", "notebooks", "policies"})  # tests/python runs the notebooks, policy_test.py the policies
         page = (ROOT / "docs/pipelines.md").read_text()
-        for name in names - {"notebooks"}:
+        for name in names - {"notebooks", "policies"}:
             self.assertIn(f"examples/{name}", page)
 
     def test_a_run_leaves_a_complete_directory(self):
@@ -220,7 +225,7 @@ void main() { words[gl_LocalInvocationIndex % 2u] = imageAtomicAdd(counts, ivec2
     def test_init_writes_a_file_that_runs_as_it_is(self):
         for name in (*PICTURES, "reduction"):
             with self.subTest(example=name):
-                shaders = [p for p in sorted((ROOT / "examples" / name).iterdir()) if p.suffix not in (".toml", ".obj")]
+                shaders = shaders_of(name)
                 done = self.glint("init", f"{name}.toml", *shaders)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.run_file(f"{name}.toml")
@@ -242,7 +247,7 @@ void main() {
         head = "#version 460\n#extension GL_EXT_ray_tracing : require\nlayout(location = 0) rayPayloadInEXT vec3 color;\n"
         self.write("cam.rmiss", head + "void main() { color = vec3(0.0); }\n")
         self.write("cam.rchit", head + "void main() { color = vec3(gl_PrimitiveID < 2 ? 0.3 : 1.0); }\n")  # the floor, the pyramid
-        projects = {name: [p for p in sorted((ROOT / "examples" / name).iterdir()) if p.suffix not in (".toml", ".obj")] for name in PICTURES}
+        projects = {name: shaders_of(name) for name in PICTURES}
         for name, shaders in {**projects, "cam": [f"cam.{stage}" for stage in ("rgen", "rmiss", "rchit")]}.items():
             with self.subTest(project=name):
                 self.assertEqual(self.glint("init", f"{name}.toml", *shaders).returncode, 0)

@@ -8,15 +8,13 @@ import math
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import xml.etree.ElementTree
 
 import glint_case
-from glint_case import ROOT
+from glint_case import CHROMIUM, ROOT
 from report_case import SMALL, Elements, ReportTest, leaves
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 # This script presses all buttons below figures. data-kept of the body gets what they save.
 HAND_OUT = """
@@ -33,10 +31,7 @@ class Browser(ReportTest):
         """Returns the page's document after its script and then `script` have run. The console must have said nothing."""
         page = self.report(*names)
         self.write("report.html", glint_case.when_ready(page, script))
-        done = subprocess.run(
-            [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--enable-logging=stderr", "--window-size=1280,900",
-             "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/report.html"],
-            capture_output=True, text=True, timeout=280)
+        done = glint_case.opened(self.folder / "report.html")
         console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
         self.assertIn('data-ready="yes"', done.stdout, "the script did not end:\n" + "\n".join(console))
         self.assertEqual(console, [])
@@ -116,8 +111,7 @@ class Browser(ReportTest):
         at = page.index('id="data">') + 1000
         for name, text, told in (("damaged", page[:at] + ("A" * 40) + page[at + 40:], "This page is damaged"), ("old", page.replace("<head>", "<head><script>delete window.DecompressionStream</script>", 1), "2023 or later")):
             self.write(f"{name}.html", text)
-            done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.folder}/profile", "--virtual-time-budget=20000", "--dump-dom", f"file://{self.folder}/{name}.html"],
-                                  capture_output=True, text=True, timeout=280)
+            done = glint_case.opened(self.folder / f"{name}.html")
             self.assertRegex(done.stdout, rf'<p class="note failed">[^<]*{told}', name)
             self.assertNotIn('data-ready="yes"', done.stdout)
 
