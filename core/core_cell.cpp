@@ -18,6 +18,7 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       l1_(context.l1),
       rt_(context.rt),
       no_skip_(context.no_skip),
+      shared_per_block_(needs_of(context.world, context.shared_per_warp).shared_bytes),
       table_(context.table ? context.table : std::make_shared<IssueTable>(*context.world.image, params)),
       executor_(context.world, context.clock_mhz),
       view_(context.turn ? std::make_unique<exec::MemoryView>() : nullptr),
@@ -62,16 +63,16 @@ uint64_t CoreCell::constant_bytes(const Params& params, const exec::World& world
   return params.constant.perfect ? 0 : world.constant_bank.size();
 }
 
-LaunchNeeds CoreCell::needs_of(const exec::World& world) {
-  return {world.image->num_registers, exec::warps_per_block(world), world.shared_bytes,
+LaunchNeeds CoreCell::needs_of(const exec::World& world, uint32_t shared_per_warp) {
+  const uint32_t warps = exec::warps_per_block(world);
+  return {world.image->num_registers, warps, world.shared_bytes + warps * shared_per_warp,
           world.block_size[0] != 0};
 }
 
 bool CoreCell::has_room() const {
   const uint32_t blocks = warps_.blocks().num_taken();
   return warps_.num_resident() + executor_.warps_per_block() <= warps_.size() &&
-         blocks < warps_.blocks().size() &&
-         uint64_t{blocks + 1} * world_.shared_bytes <= params_.shared_bytes;
+         blocks < warps_.blocks().size() && (blocks + 1) * shared_per_block_ <= params_.shared_bytes;
 }
 
 void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {

@@ -47,6 +47,7 @@ class CoreCell final : public Cell {
     Address tables = 0;  // physical address of the candidates of the core's rays, with table_bytes() bytes
     CodePlaces places;   // used when the caches of instructions or constants are not perfect
     Cycle turn = 0;      // cycles after which other cores see what this one wrote; 0: there are no others
+    uint32_t shared_per_warp = 0;  // bytes of shared memory that the RT unit takes for each warp
     // It belongs to the program and the parameters, and cores share it. null: the core makes its own.
     std::shared_ptr<const IssueTable> table = nullptr;
   };
@@ -79,7 +80,7 @@ class CoreCell final : public Cell {
   // ended.
   bool has_room() const;
   // Returns how many blocks and warps fit at a time, and what limits them.
-  static LaunchNeeds needs_of(const exec::World& world);
+  static LaunchNeeds needs_of(const exec::World& world, uint32_t shared_per_warp = 0);
   // Puts block `block_index` of the launch into the lowest free slots. Its first instructions can issue at
   // `ready`.
   void launch(Cycle now, uint32_t block_index, Cycle ready);
@@ -146,6 +147,7 @@ class CoreCell final : public Cell {
   mem::L1Port& l1_;
   rt::RtPort& rt_;
   const bool no_skip_;
+  const uint64_t shared_per_block_;
   const std::shared_ptr<const IssueTable> table_;
   exec::Executor executor_;
   const std::unique_ptr<exec::MemoryView> view_;

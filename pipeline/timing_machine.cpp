@@ -24,6 +24,15 @@ LaunchEnd early_end(const LaunchWatch& watch, Cycle now) {
   return watch.stop && watch.stop() ? LaunchEnd::Stopped : LaunchEnd::Whole;
 }
 
+// Returns the bytes of shared memory that each warp of the launch needs for the stacks of its rays.
+uint32_t stack_bytes_per_warp(const GpuParams& params, const exec::World& world) {
+  const auto& code = world.image->code;
+  const bool traces = std::any_of(code.begin(), code.end(), [](const exec::Step& step) {
+    return isa::effect_row(step.effect).finish == isa::Finish::Rays;
+  });
+  return traces ? rt::RtUnit::shared_bytes_per_warp(params.rt) : 0;
+}
+
 // Checks the parameters before anything is built from them.
 const GpuParams& checked(const GpuParams& params, const exec::World& world) {
   Diagnostics diagnostics;
@@ -31,7 +40,8 @@ const GpuParams& checked(const GpuParams& params, const exec::World& world) {
   core::check(params.core, world.image->num_registers, diagnostics);
   const auto& block = world.block_size;
   core::check_block(params.core, world.image->num_registers, uint64_t(block[0]) * block[1] * block[2],
-                    world.shared_bytes, diagnostics);
+                    core::CoreCell::needs_of(world, stack_bytes_per_warp(params, world)).shared_bytes,
+                    diagnostics);
   diagnostics.throw_if_errors();
   return params;
 }
@@ -60,6 +70,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
   const auto reserve = [&](uint64_t bytes) { return bytes ? world.memory->reserve(bytes) : Address{0}; };
   const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)),
                 constants = reserve(core::CoreCell::constant_bytes(params_.core, world));
+  const uint32_t shared_per_warp = stack_bytes_per_warp(params_, world);
   const auto table = std::make_shared<const core::IssueTable>(*world.image, params_.core);
   for (uint32_t i = 0; i < params_.cores; ++i) {
     const std::string name = fmt::format("core[{}]", i);
@@ -88,6 +99,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
                                           .tables = rt.tables.base,
                                           .places = {code, constants},
                                           .turn = turn,
+                                          .shared_per_warp = shared_per_warp,
                                           .table = table};
     cores_.push_back(std::make_unique<core::CoreCell>(params_.core, context));
     access_latency_.add(cores_.back()->latencies());
@@ -256,7 +268,8 @@ exec::NotFiniteStores TimingMachine::not_finite_stores() const {
 }
 
 void TimingMachine::collect(RenderResult& result) const {
-  result.residency = core::residency(params_.core, core::CoreCell::needs_of(world_));
+  result.residency =
+      core::residency(params_.core, core::CoreCell::needs_of(world_, stack_bytes_per_warp(params_, world_)));
   for (const auto& core : cores_) {
     const core::CoreStats& stats = core->stats();
     for (size_t c = 0; c < size_t(isa::Class::Count); ++c) {

@@ -26,7 +26,8 @@ struct alignas(64) RayState {
   uint8_t format = 0;      // FormatId of the structure
   uint8_t node_bytes = 0;  // size of its internal nodes
   bool broken = false;     // The structure's bytes led outside memory, and the ray ended without a meaning.
-  Address base = 0;        // virtual address of the header of the structure being walked
+  int16_t stack_in_memory = 0;  // This number of those entries lie in memory. The stack model sets it.
+  Address base = 0;             // virtual address of the header of the structure being walked
   // The ray gathers its candidates here. With null it stops at each. The owner sets it before begin().
   CandidateTable* table = nullptr;
   // The RT unit sets this when its stack model needs a path; begin() sets null.

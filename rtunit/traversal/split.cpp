@@ -41,7 +41,7 @@ void split_off(RayState& from, size_t entry, RayState& part) {
   part.broken = part.terminated = false;
   part.stack.set(0, from.stack[entry]);
   part.stack_size = part.stack_peak = 1;
-  part.stack_off_chip = 0;
+  part.stack_off_chip = part.stack_in_memory = 0;
   part.bottom_stack_base = -1;
   part.base = from.ray.structure;
   part.instance_leaf = 0;

@@ -301,7 +301,7 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   s.instance_leaf = 0;
   s.instance = kNoHit;
   s.instance_flags = s.instance_custom_index = s.instance_sbt_record = 0;
-  s.stack_size = s.stack_peak = s.stack_off_chip = 0;
+  s.stack_size = s.stack_peak = s.stack_off_chip = s.stack_in_memory = 0;
   s.rules.retest = true;
   s.rules.order = nullptr;
   s.path = nullptr;

@@ -17,7 +17,7 @@ enum class Stall : uint8_t {
   Prefetch,       // It sent a prefetch, because it had nothing else to send.
   MshrFull,       // A lane wants to read, and no entry is free.
   TestBusy,       // A node waits for a test pipeline.
-  WaitingMemory,  // Nodes are on their way.
+  WaitingMemory,  // Nodes or entries of stacks are on their way.
   TestLatency,    // Only tests are in flight.
   Handover,       // A warp is being taken over or given back.
   Idle,           // The unit holds no warp.

@@ -35,6 +35,10 @@ uint64_t RtUnit::stack_bytes_per_warp(const Params& params) {
   return StackMover::bytes_per_warp(*params.stack.make({}));
 }
 
+uint32_t RtUnit::shared_bytes_per_warp(const Params& params) {
+  return params.stack.make({})->shared_area().bytes_per_warp();
+}
+
 uint64_t RtUnit::pool_bytes(const Params& params) {
   return has_pool(params) ? WarpFormer::bytes(params) : 0;
 }
@@ -75,8 +79,7 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
   if (params.entry.name != RayEntry::kRoot) entry = params.entry.make({&stats_, context.memory});
   if (stack->keeps_path() || (entry && entry->wants_path())) add<PathKeeper>(buffer_);
   if (entry) add<EntryLookUp>(std::move(entry), context.memory, buffer_, pipelines_, stats_);
-  if (StackMover::is_needed(*stack))
-    add<StackMover>(std::move(stack), context.stacks, context.l1, buffer_, fetches_, stats_);
+  if (StackMover::is_needed(*stack)) add_stack_mover(std::move(stack), context);
   if (shortcuts.fetch_headers || shortcuts.fetch_descriptors)
     add<SplitReads>(shortcuts, context.memory, buffer_, pipelines_, stats_);
   if (params.result_store) add<ResultWriter>(context.l1, buffer_, stats_, context.results);
@@ -93,6 +96,14 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
       receive(now);
       pipelines_.start_tests(now);
     });
+}
+
+void RtUnit::add_stack_mover(std::unique_ptr<StackModel> model, const Context& context) {
+  StackMover& mover =
+      add<StackMover>(std::move(model), context.stacks, context.l1, buffer_, fetches_, walk_, stats_);
+  if (!mover.has_shared()) return;
+  shared_stacks_ = &mover;
+  before_tests_.push_back([&mover](Cycle now) { mover.move_shared(now); });
 }
 
 template <class Part, class... Args>
@@ -182,7 +193,8 @@ bool RtUnit::has_reads_waiting() const {
 Stall RtUnit::idle_reason() const {
   if (fetches_.is_full() && has_reads_waiting()) return Stall::MshrFull;
   if (pipelines_.is_any_waiting()) return Stall::TestBusy;
-  if (fetches_.num_reads()) return Stall::WaitingMemory;
+  if (fetches_.num_reads() || (shared_stacks_ && shared_stacks_->has_shared_loads()))
+    return Stall::WaitingMemory;
   if (pipelines_.is_any_running()) return Stall::TestLatency;
   return num_resident() ? Stall::Handover : Stall::Idle;
 }

@@ -27,6 +27,8 @@
 
 namespace glint::rt {
 
+class StackMover;
+
 // Wires the stages of the unit. The data goes through them in this order:
 //   WarpBuffer     holds the warps; a lane wants a node
 //   FetchQueue     chooses a node for the lanes that want it, and reads it through the L1
@@ -51,6 +53,8 @@ class RtUnit final : public RtPort {
   // Returns the bytes that Context::results must hold. 0: it is not used.
   static uint64_t result_bytes(const Params& params);
   static uint64_t stack_bytes_per_warp(const Params& params);
+  // Returns the bytes of the SM's shared memory that the stacks of a warp's rays take.
+  static uint32_t shared_bytes_per_warp(const Params& params);
   // Returns the bytes that Context::ray_states must hold. 0: they are not used.
   static uint64_t pool_bytes(const Params& params);
   // Returns the number of warps that the unit accepts at once.
@@ -100,6 +104,7 @@ class RtUnit final : public RtPort {
 
  private:
   void add_optional_parts(const Params& params, const Context& context);
+  void add_stack_mover(std::unique_ptr<StackModel> model, const Context& context);
   template <class Part, class... Args>
   Part& add(Args&&... args);
 
@@ -123,6 +128,7 @@ class RtUnit final : public RtPort {
   std::vector<RequestSource*> sources_;       // the sources among these parts, by priority
   PrefetchSender* prefetches_ = nullptr;      // sends when no source does
   WarpFormer* former_ = nullptr;              // forms the warps, when there is a pool
+  StackMover* shared_stacks_ = nullptr;       // keeps parts of stacks in shared memory
   WorkSharing* sharing_ = nullptr;            // lets lanes help each other
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
   // This is the first cycle with work of the unit's own, unless answers of the L1 come before. It is 0 when a

@@ -86,7 +86,7 @@ std::vector<Params> combinations() {
               p.coalescing.name = coalescing;
               p.stack.name = stack;
               p.scheduler.name = scheduler;
-              choose_around(29 * number, p);  // The factor keeps a digit from following a loop.
+              choose_around(37 * number, p);  // The factor keeps a digit from following a loop.
               p.retest = retest;
               p.mshr_entries = entries;
               p.result_store = number++ % 2;

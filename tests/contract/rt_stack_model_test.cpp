@@ -44,11 +44,21 @@ TEST_CASE("every stack model keeps the next entry on chip, and fills what it has
     int most_on_chip = 0;
     for (int round = 0; round < 300; ++round) {
       Walker walker(*model);
-      std::set<int> in_memory;  // rows
+      std::set<int> in_memory, shared;  // rows
+      const SharedArea area = model->shared_area();
       const auto settle = [&] {
         const StackWork work = model->settle(walker.ray);
-        for (int i = 0; i < work.spills; ++i) REQUIRE(in_memory.insert(work.row + i).second);
+        for (int i = 1; i <= work.loads; ++i) REQUIRE(shared.erase(work.shared_row - i) == 1);
         for (int i = 1; i <= work.fills; ++i) REQUIRE(in_memory.erase(work.row - i) == 1);
+        int spilled = 0;
+        for (int i = 0; i < work.stores; ++i) {
+          if (work.stores - i <= work.spills) REQUIRE(shared.erase(work.row + spilled++) == 1);
+          REQUIRE(shared.insert(work.shared_row + i).second);
+          REQUIRE(shared.size() <= area.rows);
+        }
+        REQUIRE((area.rows == 0 || spilled == work.spills));
+        for (int i = 0; i < work.spills; ++i) REQUIRE(in_memory.insert(work.row + i).second);
+        REQUIRE(walker.ray.stack_in_memory == (area.rows ? 4 * int(in_memory.size()) : 0));
         for (const int row : in_memory) REQUIRE(row < int(model->rows()));
         const int on_chip = walker.ray.stack_size - walker.ray.stack_off_chip;
         REQUIRE((on_chip > 0 || walker.ray.stack_size == 0));
@@ -63,7 +73,7 @@ TEST_CASE("every stack model keeps the next entry on chip, and fills what it has
                      random.below(100) < 60 - uint32_t(walker.ray.stack_size) / 4 ? int(random.below(5)) : 0);
         settle();
       }
-      CHECK(in_memory.empty());
+      CHECK((in_memory.empty() && shared.empty()));
     }
     if (name == "full")
       CHECK(most_on_chip > 20);
@@ -85,6 +95,33 @@ TEST_CASE("a short stack spills four entries when a ninth comes, and fills them 
   walker.visit(1, 0);
   work = model->settle(walker.ray);
   CHECK((work.fills == 1 && work.row == 1 && walker.ray.stack_off_chip == 0));
+}
+
+TEST_CASE("a stack with a shared area fills that before it spills, and empties it before it fills") {
+  const auto model = model_of("shared_memory");  // 8 entries on chip, and 8 in the area
+  CHECK(model->shared_area().bytes_per_warp() == 32 * 8 * 8);
+  Walker walker(*model);
+  walker.visit(1, 17);
+  StackWork work = model->settle(walker.ray);
+  CHECK((work.stores == 3 && work.spills == 1 && work.row == 0 && work.shared_row == 0));
+  CHECK((walker.ray.stack_off_chip == 12 && walker.ray.stack_in_memory == 4));
+  walker.visit(5, 0);
+  work = model->settle(walker.ray);
+  CHECK((work.loads == 1 && work.shared_row == 3 && work.fills == 0));
+  walker.visit(4, 0);
+  work = model->settle(walker.ray);
+  CHECK((work.loads == 1 && work.shared_row == 2 && work.fills == 0));
+  walker.visit(4, 0);
+  work = model->settle(walker.ray);
+  CHECK((work.loads == 0 && work.fills == 1 && work.row == 1));
+  CHECK((walker.ray.stack_off_chip == 0 && walker.ray.stack_in_memory == 0));
+}
+
+TEST_CASE("rows of a lane lie in one quarter of the banks when interleaved, and in turn in all otherwise") {
+  const SharedArea interleaved{2, 1, 23, true}, apart{2, 1, 23, false};
+  CHECK((interleaved.quarter(0, 5) == 1 && interleaved.quarter(1, 5) == 1));
+  CHECK((apart.quarter(0, 5) == 2 && apart.quarter(1, 5) == 3 && apart.quarter(2, 5) == 2));
+  CHECK(apart.quarter(0, 7) == apart.quarter(0, 5));
 }
 
 TEST_CASE("a ray that ends at its first hit leaves its stack where it is") {

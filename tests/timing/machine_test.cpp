@@ -67,6 +67,20 @@ TEST_CASE(
   CHECK(pipeline::render(job).cycles == costly.cycles);
 }
 
+TEST_CASE("stacks in shared memory take its room from the warps of a launch that traces rays") {
+  pipeline::RenderJob job = frame();
+  const pipeline::RenderResult plain = pipeline::render(job);
+  job.gpu.rt.stack = PolicyChoice<rt::StackModel>("shared_memory");  // 2 KiB a warp
+  job.gpu.core.shared_bytes = 7 * 2048 + 2047;
+  const pipeline::RenderResult shared = pipeline::render(job);
+  CHECK(plain.residency.warps > 7);
+  CHECK(shared.residency.warps == 7);
+  CHECK(name_of(shared.residency.limit) == "shared memory");
+  CHECK(shared.rgba == plain.rgba);
+  job.gpu.core.shared_bytes = 2047;
+  CHECK_THROWS_WITH(pipeline::render(job), Catch::Contains("a block needs 2048 bytes of shared memory"));
+}
+
 TEST_CASE("a timing run says what limits the warps of a core") {
   pipeline::RenderJob job = frame();
   const pipeline::RenderResult result = pipeline::render(job);

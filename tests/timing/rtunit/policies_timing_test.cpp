@@ -1,9 +1,12 @@
 // Tests the cycles of the RT unit's policies exactly: reads, stacks that leave the chip, restarts, sharing.
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
 
 #include "memsys/memory_system.h"
+#include "rtunit/unit/shared_stack_port.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_launch.h"
+#include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
 namespace {
@@ -120,6 +123,50 @@ TEST_CASE("a spill costs the port a cycle and a fill the L1's latency") {
     spills += s.stack_spills.value();
   }
   CHECK(spills > 10);
+}
+
+TEST_CASE("entries that come back from shared memory cost the cycle to their pass and the latency") {
+  const Thicket scene;
+  uint64_t loads = 0;
+  for (uint64_t seed = 1; seed < 40; ++seed) {
+    const Cycle latency = 5 + seed;
+    Params params = plain();
+    params.stack.name = "shared_memory";
+    const LoneRun run(scene, params, seed, latency);
+    const RtStats& s = run.unit.stats();
+    const auto shared = [&](const char* name) {
+      return glint::test::counter_in(glint::test::listing(s), name);
+    };
+    // All rows of a lane lie in the same banks.
+    CHECK(shared("passes") == shared("stores") + shared("loads") + shared("spills"));
+    CHECK(shared("stores") == shared("loads") + shared("spills"));
+    CHECK(shared("spills") == s.stack_spills.value());
+    CHECK(s.stack_spills.value() == s.stack_fills.value());
+    if (s.stack_spills.value() > 0)
+      continue;  // Whether those meet reads of nodes cannot be told from counts.
+    CHECK(run.cycles == time_of(s, params, latency) + shared("loads") * (1 + 23));
+    loads += shared("loads");
+  }
+  CHECK(loads > 10);
+}
+
+TEST_CASE("rows in the same banks go one after the other, and those in different banks together") {
+  const SharedArea area{2, 1, 5, true};
+  SharedStackPort port(area, nullptr);
+  std::vector<std::pair<Cycle, int>> done;
+  const auto run = [&](Cycle until) {
+    for (Cycle now = 1; now <= until; ++now)
+      port.run(now, [&](const SharedStackPort::Move& move) { done.emplace_back(now, int(move.lane)); });
+  };
+  const auto kind = SharedStackPort::Kind::Load;
+  for (const int lane : {0, 1, 2, 3, 4, 8, 5}) port.ask({0, 0, uint8_t(lane), kind}, lane, 0);
+  CHECK(port.has_loads());
+  CHECK(port.next_event(0) == 1);
+  run(8);
+  // Lanes 0 to 3 pass in cycle 1, lane 4 in cycle 2 and lanes 8 and 5 in cycle 3.
+  CHECK(done == std::vector<std::pair<Cycle, int>>{{6, 0}, {6, 1}, {6, 2}, {6, 3}, {7, 4}, {8, 8}, {8, 5}});
+  CHECK_FALSE(port.has_loads());
+  CHECK(port.next_event(8) == kNever);
 }
 
 TEST_CASE("a restart costs the visits from the root to the parent of what was forgotten") {
