@@ -15,6 +15,13 @@ echarts.use([BarChart, CustomChart, LineChart, RadarChart, ScatterChart, AxisPoi
 const kMaxTableRows = 80; // longer tables are in the CSV only
 const kExportWidth = 720;
 
+const undrawn = []; // drawings of figures that wait for their place in the page
+
+// Draws the figures that have been made and placed since the last call, without waiting for the browser's next frame.
+export function drawPlaced() {
+  for (const fit of undrawn.splice(0)) fit();
+}
+
 // Builds a figure of `chart`, which one of kinds/ made: {option(theme, width), height(theme, width), columns, rows}. `before` is an element between
 // the note and the chart.
 export function figure({ id, title, note, wide, before }, chart) {
@@ -32,11 +39,9 @@ export function figure({ id, title, note, wide, before }, chart) {
     canvas.querySelector("svg")?.setAttribute("viewBox", `0 0 ${width} ${height}`); // Print can scale it then.
   };
   let last = 0;
-  new ResizeObserver(() => {
-    if (canvas.clientWidth === last) return;
-    last = canvas.clientWidth;
-    requestAnimationFrame(() => draw()); // A chart changes the page's height, which must not happen within the observer.
-  }).observe(canvas);
+  const isNew = () => canvas.clientWidth !== last && ((last = canvas.clientWidth), true);
+  undrawn.push(() => isNew() && draw());
+  new ResizeObserver(() => isNew() && requestAnimationFrame(() => draw())).observe(canvas); // A chart changes the page's height, which must not happen within the observer.
   onSchemeChange(() => draw());
   window.addEventListener("beforeprint", () => draw("light"));
   window.addEventListener("afterprint", () => draw());

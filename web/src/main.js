@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { readDocument } from "./document.js";
 import { h } from "./dom.js";
-import { figure, figures as figuresOf } from "./figure.js";
+import { drawPlaced, figure, figures as figuresOf } from "./figure.js";
 import * as caches from "./figures/caches.js";
 import * as cpiStack from "./figures/cpi_stack.js";
 import * as dram from "./figures/dram.js";
@@ -81,6 +81,7 @@ function draw(data) {
   suites(data);
   document.getElementById("contents").append(h("a", { href: "#overview", class: "brand" }, "Glint"), ...[...document.querySelectorAll("section > h2")].map((title) => h("a", { href: `#${title.parentElement.id}` }, title.textContent)));
   document.getElementById("footer").append(`Glint ${data.version}. `, ...runs.map((run) => h("p", {}, h("code", {}, run.data.run.command.join(" ")), ` · ${run.facts.git} · ${run.facts.compiler} · ${run.facts.started}`)));
+  drawPlaced();
   document.documentElement.dataset.ready = "yes"; // Tests read this: all of the above has run.
   document.getElementById(location.hash.slice(1))?.scrollIntoView(); // What the address names was not there when the browser looked.
 }
