@@ -21,6 +21,7 @@
 #include "isa/text.h"
 #include "memsys/address_space.h"
 #include "rtunit/any_hit_mode.h"
+#include "rtunit/leaf_filter.h"
 
 namespace glint::exec {
 
@@ -132,6 +133,7 @@ struct World {
   uint32_t shared_bytes = 0;                      // shared memory of a block
   uint32_t dynamic_shared_bytes = 0;              // the part of it that the launch asked for, not the program
   std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate
+  std::shared_ptr<const rt::LeafFilter> filter;   // null: any-hit shaders decide what is not opaque
   bool nearest_first_hit = true;                  // rt::TraversalRules::end_at_first_hit is its opposite
   TraversalCode traversal;                        // empty: the RT unit walks rays
   uint32_t local_bytes = 0;                       // bytes of a lane's stack and of what `traversal` needs

@@ -147,6 +147,7 @@ bool RayQueries::begin(WarpContext& warp, const isa::Inst& inst, RayState* state
     ray.cull_mask = read_word(warp.regs, inst, InitializeOperand::kMask, lane) & 0xff;
     read_ray(warp.regs, inst, InitializeOperand::kRay, lane, ray);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
+    state.filter = world_.filter.get();
     if (!rt::begin(state, *world_.memory) &&
         !ray_faults_.let_pass_structure(warp, lane, "starts a ray query in", ray.structure))
       return false;

@@ -61,7 +61,7 @@ inline float corner_of(const rt::Hit& hit, uint32_t number, const mem::AddressSp
   if (!bytes || number >= 9) return 0;
   rt::TriangleLeaf leaf;
   std::memcpy(&leaf, bytes, sizeof leaf);
-  const bool second = leaf.count > 1 && leaf.primitive[1] == hit.primitive;
+  const bool second = leaf.count > 1 && leaf.primitive_of(1) == hit.primitive;
   const uint32_t corner = number / 3;
   return leaf.vertex[second ? leaf.second >> 2 * corner & 3 : corner][number % 3];
 }

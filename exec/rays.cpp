@@ -100,6 +100,7 @@ bool Rays::trace(WarpContext& warp, const isa::Inst& inst) {
     rt::RayState& state = frame.ray[size_t(lane)];
     set_ray(warp.regs, inst, lane, state.ray);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
+    state.filter = world_.filter.get();
     state.table = candidates_.table_of(frame, lane);
     if (!rt::begin(state, *world_.memory) &&
         !ray_faults_.let_pass_structure(warp, lane, "traces a ray into", state.ray.structure)) [[unlikely]] {

@@ -121,6 +121,8 @@ SceneWorld::SceneWorld(const RenderJob& job, scenes::Scene* drain) {
   world.constant_bank.resize(isa::kConstantBankBytes);
   world.nearest_first_hit = job.gpu.rt.nearest_first_hit;
   world.any_hit = job.gpu.rt.any_hit.make({});
+  if (job.gpu.rt.leaf_filter.name != rt::LeafFilter::kNone)
+    world.filter = job.gpu.rt.leaf_filter.make({nullptr, memory_});
   world.layout = job.gpu.core.layout.make({});
   world.launch_size = {job.frame.width, job.frame.height, 1};
   world.first_id = {job.frame.crop_x, job.frame.crop_y, 0};
@@ -222,6 +224,9 @@ void SceneWorld::upload_images(const RenderJob& job, scenes::Scene* drain) {
     add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width,
         texture.height, texture.rgba.data());
     if (texture.repeat) world.images.back().sampler.wrap.fill(exec::Wrap::Repeat);
+    const exec::ImageView& image = world.images.back();
+    alpha_.push_back(
+        {memory_.view<uint8_t>(image.base, image.bytes()), image.width, image.height, image.sampler.wrap[0]});
     if (drain) release(drain->textures[i].rgba);
   }
   if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
@@ -243,10 +248,22 @@ rt::EncodedBottom SceneWorld::encode_bottom(const RenderJob& job, size_t index, 
     geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
     geometry.no_duplicate_any_hit = true;
   }
+  rt::Micromaps micromaps;
+  // Without an alpha test the workload's rays ask no any-hit shader.
+  if (const auto format = world.filter ? world.filter->micromaps() : std::nullopt;
+      format && job.scene.alpha_test && !model.is_procedural()) {
+    micromaps = bake(job, index, *format);
+    geometry.micromaps = &micromaps;
+  }
   const rt::BottomLevel level{{geometry}};
   const std::string name = name_of_model(model);
   return job.structure_cache ? job.structure_cache->encode(name, level, job.gpu.bvh, threads)
                              : rt::encode_bottom(name, level, job.gpu.bvh, threads);
+}
+
+rt::Micromaps SceneWorld::bake(const RenderJob& job, size_t index, const rt::MicromapFormat& format) const {
+  return bake_opacity({uploaded_[index].vertices, uploaded_[index].indices, job.scene.materials, alpha_},
+                      format);
 }
 
 // Builds the bottom levels on all threads, and places them in the order of the models, so that addresses do

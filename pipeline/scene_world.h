@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/opacity_bake.h"
 #include "pipeline/render.h"
 #include "pipeline/unbound.h"
 #include "rtunit/structure/build.h"
@@ -51,6 +52,7 @@ class SceneWorld {
   SceneWorld(const RenderJob& job, scenes::Scene* drain);
   void upload_geometry(const RenderJob& job, scenes::Scene* drain);
   rt::EncodedBottom encode_bottom(const RenderJob& job, size_t model, uint32_t threads) const;
+  rt::Micromaps bake(const RenderJob& job, size_t model, const rt::MicromapFormat& format) const;
   void upload_images(const RenderJob& job, scenes::Scene* drain);
   std::vector<rt::StructureInfo> build_bottoms(const RenderJob& job);
   void build_structures(const RenderJob& job);
@@ -61,8 +63,9 @@ class SceneWorld {
   Address upload(const std::string& name, const void* data, uint64_t bytes);
 
   mem::AddressSpace memory_;
-  std::vector<Uploaded> uploaded_;  // of each model
-  std::set<uint32_t> bound_;        // bindings of set 0
+  std::vector<Uploaded> uploaded_;   // of each model
+  std::vector<AlphaTexture> alpha_;  // the scene's textures, as they were uploaded
+  std::set<uint32_t> bound_;         // bindings of set 0
   exec::Image image_;
 };
 

@@ -40,6 +40,15 @@ std::string key_of(const rt::BottomLevel& input, const rt::BuildOptions& options
       first = content_hash(part, first);
       second = content_hash(part, second);
     }
+    if (!g.micromaps) continue;
+    const rt::MicromapFormat& format = g.micromaps->format;
+    key += fmt::format(" micromaps {}^{} {}", format.two_states ? 2 : 4, format.level,
+                       g.micromaps->states.size());
+    for (const std::string_view part :
+         {bytes_of(std::span(g.micromaps->index)), bytes_of(std::span(g.micromaps->states))}) {
+      first = content_hash(part, first);
+      second = content_hash(part, second);
+    }
   }
   return key + fmt::format(" {:016x}{:016x}", first, second);
 }

@@ -11,6 +11,7 @@
 #include "rtunit/any_hit_mode.h"
 #include "rtunit/child_order.h"
 #include "rtunit/coalescer.h"
+#include "rtunit/leaf_filter.h"
 #include "rtunit/node_test.h"
 #include "rtunit/prefetcher.h"
 #include "rtunit/ray_entry.h"
@@ -81,6 +82,7 @@ struct Params {
   PolicyChoice<NodeTest> node_test{"by_node"};
   PolicyChoice<RayScheduler> scheduler{"oldest_first"};
   PolicyChoice<AnyHitMode> any_hit{"immediate"};
+  PolicyChoice<LeafFilter> leaf_filter{"none"};
   PolicyChoice<ChildOrder> child_order{"near_first"};
   PolicyChoice<TraversalOrder> order{"depth_first"};
   PolicyChoice<Coalescer> coalescing{"within_warp"};
@@ -147,6 +149,8 @@ struct Params {
         policy(&Params::any_hit, "any_hit",
                "Selects when intersection and any-hit shaders run: at each candidate, or over a table after "
                "the traversal."),
+        policy(&Params::leaf_filter, "leaf_filter",
+               "Selects what decides candidates that are not opaque before a shader is asked."),
         policy(&Params::child_order, "child_order",
                "Selects the order in which a ray visits the children that it hits."),
         policy(&Params::order, "order", "Selects which of its open nodes a ray visits next."),

@@ -48,6 +48,7 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
   check_policy("rt.stack", rt.stack);
   check_policy("rt.mapping", rt.mapping);
   check_policy("rt.entry", rt.entry);
+  check_policy("rt.leaf_filter", rt.leaf_filter);
   check_policy("rt.prefetch", rt.prefetch);
   check_policy("memory.noc.topology", params.memory.noc.topology);
   if (!message.empty())

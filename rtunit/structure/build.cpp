@@ -14,6 +14,7 @@
 #include "base/registry.h"
 #include "rtunit/structure/build_tree.h"
 #include "rtunit/structure/leaves.h"
+#include "rtunit/structure/micromap_table.h"
 #include "rtunit/structure/treelet_table.h"
 #include "rtunit/traversal/ray_stack.h"
 
@@ -89,9 +90,19 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves leaves, cons
     placement.bytes += (treelets.bytes() + kBlockBytes - 1) / kBlockBytes * kBlockBytes;
     check_size_with_treelets(name, placement.bytes);
   }
+  if (!leaves.micromaps.empty()) {
+    header.micromaps = uint32_t(placement.bytes / kBlockBytes);
+    // A unit reads them in sectors, so that the last one is whole.
+    placement.bytes = (placement.bytes + leaves.micromaps.size() + kLeafBytes - 1) / kLeafBytes * kLeafBytes;
+    check_size(name, placement.bytes);
+    if (header.treelets) check_size_with_treelets(name, placement.bytes);
+  }
   mem::HostBlock bytes = format->encode(tree, placement, threads);
   if (header.treelets)
     write_treelets(treelets, tree, order, placement, bytes.data() + size_t{header.treelets} * kBlockBytes);
+  if (header.micromaps)
+    std::copy(leaves.micromaps.begin(), leaves.micromaps.end(),
+              bytes.data() + size_t{header.micromaps} * kBlockBytes);
   info.bytes = bytes.size();
   info.format = format->id();
   header.format = uint8_t(format->id());
@@ -162,7 +173,9 @@ std::unique_ptr<NodeFormat> make_format(FormatId id) {
 
 EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input, const BuildOptions& options,
                             uint32_t threads) {
-  return encode(name, 0, leaves_of(input, options.pair_triangles, threads), options, threads);
+  Leaves leaves = leaves_of(input, options.pair_triangles, threads);
+  leaves.micromaps = take_micromaps(input, leaves);
+  return encode(name, 0, std::move(leaves), options, threads);
 }
 
 StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedBottom bottom) {

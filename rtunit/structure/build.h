@@ -11,6 +11,7 @@
 #include "base/registry.h"
 #include "memsys/address_space.h"
 #include "rtunit/node_format.h"
+#include "rtunit/structure/micromaps.h"
 
 namespace glint::rt {
 
@@ -27,6 +28,9 @@ struct Geometry {
   std::array<float, 12> transform = kIdentity;  // applied to the triangles at build
   bool opaque = true;
   bool no_duplicate_any_hit = false;  // It always holds here: every primitive lies in one leaf.
+  // Says where the triangles are opaque. Null: any-hit shaders say it. The maps of all geometries of a bottom
+  // level have the same format.
+  const Micromaps* micromaps = nullptr;
 };
 struct BottomLevel {
   std::vector<Geometry> geometries;

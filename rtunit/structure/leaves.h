@@ -1,6 +1,7 @@
 // Turns the geometry of a bottom level into leaves.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct Leaves {
   mem::HostBlock bytes;              // of the leaves, without gaps
   std::vector<uint32_t> stack_need;  // stack entries needed below each instance; empty in a bottom level
   uint64_t primitives = 0;
-  uint8_t contents = 0;  // as StructureHeader::contents
+  uint8_t contents = 0;              // as StructureHeader::contents
+  std::vector<std::byte> micromaps;  // take_micromaps(); they follow the nodes
 };
 
 // Makes the leaves of a bottom level on up to `threads` threads. Throws UserError when an index is out of

@@ -69,21 +69,31 @@ struct StructureHeader {
   uint32_t num_primitives = 0;  // active triangles and boxes, or active instances
   uint32_t stack_need = 0;      // entries that the worst ray needs in this structure
   uint64_t bytes = 0;
-  uint32_t treelets = 0;  // block of the table of treelets (rtunit/treelets.h); 0: there is none
-  uint32_t reserved[3]{};
+  uint32_t treelets = 0;   // block of the table of treelets (rtunit/treelets.h); 0: there is none
+  uint32_t micromaps = 0;  // block of the opacity micromaps (rtunit/structure/micromaps.h); 0: there are none
+  uint32_t reserved[2]{};
 };
 static_assert(sizeof(StructureHeader) == kRootBlock * kBlockBytes);
 
 // Holds one or two triangles of one geometry. The second shares an edge with the first: its corners are
-// picked from the four vertices.
+// picked from the four vertices. It is the geometry's next primitive.
 struct TriangleLeaf {
+  static constexpr uint32_t kNoOpacity = 0, kUniform = 1, kMapped = 5;  // values of opacity_of()
   std::array<std::array<float, 3>, 4> vertex;
+  // The second number is that of the last triangle. In a leaf with a map it is the number of the first
+  // triangle's map; that of the second triangle follows.
   std::array<uint32_t, 2> primitive;
   uint32_t geometry = 0;
   uint8_t count = 1;
   uint8_t opaque = 0;
-  uint8_t second = 0;  // 2 bits per corner: the number of its vertex
-  uint8_t pad = 0;
+  uint8_t second = 0;   // 2 bits per corner: the number of its vertex
+  uint8_t opacity = 0;  // 3 bits per triangle: opacity_of()
+
+  uint32_t primitive_of(uint32_t triangle) const { return primitive[0] + triangle; }
+  // Says what is known of a triangle without a shader: kNoOpacity is nothing, kUniform and the three values
+  // after it are a MicroState of the whole triangle, and with kMapped the triangle has a map.
+  uint32_t opacity_of(uint32_t triangle) const { return opacity >> 3 * triangle & 7; }
+  uint32_t map_of(uint32_t triangle) const { return primitive[1] + triangle; }
 };
 static_assert(sizeof(TriangleLeaf) == kLeafBytes);
 

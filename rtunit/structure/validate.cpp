@@ -148,7 +148,7 @@ class Validation {
     if (leaf.count < 1 || leaf.count > 2)
       error("{:#x}: block {} holds {} triangles", frame_.base, block, leaf.count);
     for (uint32_t i = 0; i < leaf.count && i < 2; ++i) {
-      reached(leaf.geometry, leaf.primitive[i]);
+      reached(leaf.geometry, leaf.primitive_of(i));
       for (uint32_t corner = 0; corner < 3; ++corner) {
         const auto& p = leaf.vertex[i ? leaf.second >> (2 * corner) & 3 : corner];
         extend(out.bounds, {p, p});

@@ -12,7 +12,8 @@ namespace glint::rt {
 namespace ray_flag {
 inline constexpr uint32_t kOpaque = 0x1, kNoOpaque = 0x2, kTerminateOnFirstHit = 0x4, kSkipClosestHit = 0x8,
                           kCullBackFacing = 0x10, kCullFrontFacing = 0x20, kCullOpaque = 0x40,
-                          kCullNoOpaque = 0x80, kSkipTriangles = 0x100, kSkipAabbs = 0x200;
+                          kCullNoOpaque = 0x80, kSkipTriangles = 0x100, kSkipAabbs = 0x200,
+                          kForceMicromaps2State = 0x400;  // SPV_EXT_opacity_micromap
 }
 inline constexpr uint32_t kHitKindFront = 0xfe, kHitKindBack = 0xff;
 

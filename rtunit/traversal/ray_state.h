@@ -13,6 +13,8 @@
 
 namespace glint::rt {
 
+class LeafFilter;
+
 // Holds data only and may be copied. The functions that work on it are in rtunit/traversal/traversal.h. What
 // a visit of a node needs lies together in the first cache lines of the host.
 struct alignas(64) RayState {
@@ -53,6 +55,8 @@ struct alignas(64) RayState {
   uint32_t instance_flags = 0, instance_custom_index = 0, instance_sbt_record = 0;
   uint32_t leaves_visited = 0, instances_visited = 0;
   uint64_t unit_cycles = 0;  // cycles in the RT unit over all stays; the unit sets it from the first stay on
+  // It decides triangles that would need an any-hit shader. Null: shaders decide. It is set before begin().
+  const LeafFilter* filter = nullptr;
 };
 
 // Brings what a visit of a node needs of a ray near to the host's core.

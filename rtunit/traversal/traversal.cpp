@@ -13,6 +13,7 @@
 #include "rtunit/formats/bvh6.h"
 #include "rtunit/formats/bvh8.h"
 #include "rtunit/intersection/triangle_test.h"
+#include "rtunit/leaf_filter.h"
 #include "rtunit/traversal/hit_rules.h"
 
 namespace glint::rt {
@@ -143,6 +144,18 @@ bool is_opaque(const RayState& s, bool geometry_opaque) {
   if (has(s, ray_flag::kNoOpaque)) opaque = false;
   return opaque;
 }
+// Asks the filter, if there is one, about the ray's candidate, which is not opaque.
+// Choice: what is forced to be opaque is so where its map is transparent, too, and culling by opacity goes by
+// the geometry, so that maps with 4 states change no picture. Vulkan lets the map come first.
+Opacity filtered(const RayState& s, const TriangleLeaf& leaf, uint32_t number) {
+  if (!s.filter) [[likely]]
+    return Opacity::Unknown;
+  const LeafAnswer answer =
+      s.filter->look_up({leaf, number, s.candidate, s.base, has(s, ray_flag::kForceMicromaps2State)});
+  const bool is_forced = has(s, ray_flag::kNoOpaque) || s.instance_flags & instance_flag::kForceNoOpaque;
+  return answer.opacity == Opacity::Opaque && is_forced ? Opacity::Unknown : answer.opacity;
+}
+
 bool culled_by_opacity(const RayState& s, bool opaque) {
   return has(s, opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque);
 }
@@ -181,14 +194,16 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     // The interval is open at both ends, also when a box's hit lies at the far one.
     const bool inside = found.t > s.ray.t_min && found.t < s.ray.t_max;
     s.hits_in_interval += inside;
-    if (!inside || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive[i])) continue;
-    s.candidate = candidate_of(s, leaf.geometry, leaf.primitive[i]);
+    if (!inside || !wins(s, found.t, s.instance, leaf.geometry, leaf.primitive_of(i))) continue;
+    s.candidate = candidate_of(s, leaf.geometry, leaf.primitive_of(i));
     s.candidate.triangle_leaf = s.base + Address(block_of(entry.node)) * kBlockBytes;
     s.candidate.t = found.t;
     s.candidate.u = found.u;
     s.candidate.v = found.v;
     s.candidate.kind = front ? kHitKindFront : kHitKindBack;
-    if (!opaque) {
+    const Opacity opacity = opaque ? Opacity::Opaque : filtered(s, leaf, i);
+    if (opacity == Opacity::Transparent) continue;
+    if (opacity == Opacity::Unknown) {
       s.candidate_procedural = false;
       if (passes(s, RayStatus::NeedsAnyHit)) continue;
       if (i == 0 && leaf.count > 1)

@@ -46,6 +46,11 @@ std::string why_no_pool(const Params& params) {
 }  // namespace
 
 std::string RtUnit::why_not_together(const Params& params) {
+  if (params.unit == kSoftware && params.leaf_filter.name != LeafFilter::kNone)
+    return fmt::format(
+        "{} does not go with rt.unit = \"{}\": instructions of the core walk the rays then, and ask no "
+        "filter",
+        chosen(LeafFilter::kKind, params.leaf_filter), kSoftware);
   if (params.scheduler.make({})->needs_treelet_ahead() && !prefetches_treelets(params))
     return fmt::format(
         "{} does not go with {}: that scheduler goes by the treelet that is read ahead; choose rt.prefetch = "

@@ -11,6 +11,7 @@
 #include "rtunit/shortcuts/hit_stores.h"
 #include "rtunit/shortcuts/split_reads.h"
 #include "rtunit/unit/entry_look_up.h"
+#include "rtunit/unit/leaf_look_ups.h"
 #include "rtunit/unit/path_keeper.h"
 #include "rtunit/unit/result_writer.h"
 #include "rtunit/unit/stack_mover.h"
@@ -72,6 +73,8 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
   if (has_pool(params))
     former_ = &add<WarpFormer>(params, context.memory, context.ray_states, context.l1, buffer_, fetches_,
                                walk_, stats_);
+  if (params.leaf_filter.name != LeafFilter::kNone)
+    add<LeafLookUps>(params.leaf_filter.make({&stats_, context.memory}), buffer_);
   if (params.order.name != TraversalOrder::kDepthFirst)
     add<WalkOrder>(params.order.make({&stats_, context.memory}), context.memory, &stats_);
   auto stack = params.stack.make({});

@@ -61,6 +61,7 @@ void choose_around(uint32_t number, Params& p) {
   p.entry.name = take<RayEntry>(number);
   p.pool.name = take<RayPool>(number);
   p.order.name = take<TraversalOrder>(number);
+  p.leaf_filter.name = take<LeafFilter>(number);
   p.oracle.any_lane = number % 2;
   if (p.scheduler.make({})->needs_treelet_ahead()) p.prefetch.name = "treelet";
   Params alone = p;
@@ -98,7 +99,8 @@ std::vector<Params> combinations() {
 
 TEST_CASE("every two policies that go together are tried together") {
   const auto names = [](const Params& p) {
-    return std::array{p.prefetch.name, p.mapping.name, p.entry.name, p.pool.name, p.order.name};
+    return std::array{p.prefetch.name, p.mapping.name, p.entry.name,
+                      p.pool.name,     p.order.name,   p.leaf_filter.name};
   };
   std::set<std::pair<std::string, std::string>> tried;
   for (const Params& p : combinations())
@@ -108,25 +110,26 @@ TEST_CASE("every two policies that go together are tried together") {
     for (const std::string& mapping : Registry<WorkMapping>::names())
       for (const std::string& entry : Registry<RayEntry>::names())
         for (const std::string& pool : Registry<RayPool>::names())
-          for (const std::string& order : Registry<TraversalOrder>::names()) {
-            Params p;
-            p.stack.name = "full";
-            p.prefetch.name = prefetch, p.mapping.name = mapping, p.entry.name = entry, p.pool.name = pool;
-            p.order.name = order;
-            if (!RtUnit::why_not_together(p).empty()) continue;
-            for (const std::string& a : names(p))
-              for (const std::string& b : names(p)) {
-                CAPTURE(a, b);
-                CHECK(tried.contains({a, b}));
-              }
-          }
+          for (const std::string& order : Registry<TraversalOrder>::names())
+            for (const std::string& filter : Registry<LeafFilter>::names()) {
+              Params p;
+              p.stack.name = "full";
+              p.prefetch.name = prefetch, p.mapping.name = mapping, p.entry.name = entry, p.pool.name = pool;
+              p.order.name = order, p.leaf_filter.name = filter;
+              if (!RtUnit::why_not_together(p).empty()) continue;
+              for (const std::string& a : names(p))
+                for (const std::string& b : names(p)) {
+                  CAPTURE(a, b);
+                  CHECK(tried.contains({a, b}));
+                }
+            }
 }
 
 TEST_CASE(
     "with every combination of policies each ray finds the same hit, and skipping to events changes no "
     "cycle") {
   uint64_t hits = 0, combination = 0, spills = 0, restarts = 0, across = 0, stale = 0, full = 0,
-           prefetches = 0, predicted = 0, moves = 0, formed = 0;
+           prefetches = 0, predicted = 0, moves = 0, formed = 0, decided = 0;
   std::vector<std::unique_ptr<BuiltScene>> built;
   std::vector<Scene> scenes;
   const auto layouts = Registry<TreeLayout>::names();
@@ -142,7 +145,7 @@ TEST_CASE(
     ++combination;
     CAPTURE(params.child_order.name, params.coalescing.name, params.stack.name, params.scheduler.name,
             params.prefetch.name, params.mapping.name, params.entry.name, params.pool.name, params.order.name,
-            params.oracle.any_lane, params.retest, params.mshr_entries, gather);
+            params.leaf_filter.name, params.oracle.any_lane, params.retest, params.mshr_entries, gather);
     Rays expected(combination, scene, false), ticked(combination, scene, gather),
         skipped(combination, scene, gather);
     mem::FixedLatencyMemory l1_ticked(20, 2), l1_skipped(20, 2);
@@ -181,12 +184,13 @@ TEST_CASE(
     const std::string listed = glint::test::listing(root_ticked);
     predicted += glint::test::counter_in(listed, "predicted");
     moves += glint::test::counter_in(listed, "moves");
+    decided += glint::test::counter_in(listed, "transparent") + glint::test::counter_in(listed, "opaque");
     formed += params.pool.name != RayPool::kNone;
   }
   CHECK(combination == combinations().size());
   CHECK(hits > 10000);
   // Each mechanism must have been at work.
-  for (const uint64_t count : {spills, restarts, across, stale, full, prefetches, predicted, moves})
+  for (const uint64_t count : {spills, restarts, across, stale, full, prefetches, predicted, moves, decided})
     CHECK(count > 100);
   CHECK(formed > 10);
 }

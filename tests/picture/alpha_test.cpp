@@ -1,7 +1,14 @@
 // Tests textures and any-hit shaders, end to end: rays pass where the texture's alpha is exactly zero.
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <unistd.h>
 #include <utility>
 
+#include "base/config.h"
+#include "base/diagnostics.h"
 #include "pipeline/render.h"
 #include "tests/support/catch.h"
 #include "tests/support/small_jobs.h"
@@ -36,11 +43,27 @@ scenes::Scene quad_scene(bool with_quad) {
   return scene;
 }
 
-pipeline::RenderResult picture(bool with_quad, bool timing, const char* any_hit = "immediate") {
+struct Choices {
+  const char* any_hit = "immediate";
+  const char* leaf_filter = "none";
+  const char* micromaps = "";  // parameters of that filter
+  std::string shader_dir = {};
+};
+pipeline::RenderResult picture(bool with_quad, bool timing, const Choices& choices = {}) {
   pipeline::RenderJob job = test::small_job("CORNELL", pipeline::Workload::PathTracing, kSize, 1);
   job.scene = quad_scene(with_quad);
   job.timing = timing;
-  job.gpu.rt.any_hit.name = any_hit;
+  job.gpu.rt.any_hit.name = choices.any_hit;
+  job.gpu.rt.leaf_filter.name = choices.leaf_filter;
+  if (*choices.micromaps) {
+    Config config;
+    config.add_text("test", choices.micromaps);
+    Diagnostics diagnostics;
+    ConfigTable table = config.root(diagnostics);
+    Registry<rt::LeafFilter>::instance().entry(choices.leaf_filter).read(table, &job.gpu.rt.leaf_filter);
+    REQUIRE_FALSE(diagnostics.has_errors());
+  }
+  if (!choices.shader_dir.empty()) job.shader_dir = choices.shader_dir;
   return pipeline::render(job);
 }
 
@@ -76,6 +99,55 @@ TEST_CASE("a picture that needs textures and any-hit shaders is the same from bo
 
 TEST_CASE("a picture with any-hit shaders is the same when they run after the traversal, on both machines") {
   const std::vector<float> immediate = picture(true, false).rgba;
-  CHECK(picture(true, false, "deferred").rgba == immediate);
-  CHECK(picture(true, true, "deferred").rgba == immediate);
+  CHECK(picture(true, false, {"deferred"}).rgba == immediate);
+  CHECK(picture(true, true, {"deferred"}).rgba == immediate);
+}
+
+TEST_CASE("micromaps with 4 states change no pixel, on both machines and in both any-hit modes") {
+  const std::vector<float> plain = picture(true, false).rgba;
+  for (const bool timing : {false, true})
+    for (const char* any_hit : {"immediate", "deferred"})
+      CHECK(picture(true, timing, {any_hit, "micromaps"}).rgba == plain);
+}
+
+// Holds the shaders of path tracing, changed so that rays ask micromaps for 2 states.
+struct TwoStateShaders {
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("glint_two_states_" + std::to_string(getpid()));
+  TwoStateShaders() {
+    namespace fs = std::filesystem;
+    const fs::path from = fs::path(GLINT_SOURCE_DIR) / "shaders";
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::copy(from / "path_tracing", folder / "path_tracing");
+    fs::create_directory_symlink(from / "include", folder / "include");
+    replace("#extension GL_EXT_ray_tracing : require",
+            "#extension GL_EXT_ray_tracing : require\n#extension GL_EXT_opacity_micromap : require");
+    replace("gl_RayFlagsNoneEXT", "gl_RayFlagsForceOpacityMicromap2StateEXT");
+  }
+  ~TwoStateShaders() { std::filesystem::remove_all(folder); }
+
+ private:
+  void replace(const std::string& old, const std::string& by) const {
+    const std::filesystem::path raygen = folder / "path_tracing/raygen.rgen";
+    std::stringstream text;
+    text << std::ifstream(raygen).rdbuf();
+    std::string changed = text.str();
+    REQUIRE(changed.find(old) != std::string::npos);
+    changed.replace(changed.find(old), old.size(), by);
+    std::ofstream(raygen) << changed;
+  }
+};
+
+TEST_CASE("a ray that forces 2 states sees maps with 4 states as maps with 2 states") {
+  const TwoStateShaders shaders;
+  const std::vector<float> plain = picture(true, false).rgba;
+  for (const bool timing : {false, true}) {
+    const std::vector<float> two =
+        picture(true, timing, {"immediate", "micromaps", "two_states = true\nlevel = 1"}).rgba;
+    CHECK(two != plain);
+    CHECK(picture(true, timing,
+                  {"immediate", "micromaps", "level = 1", (shaders.folder / "path_tracing").string()})
+              .rgba == two);
+  }
 }

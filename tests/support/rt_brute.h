@@ -16,6 +16,7 @@
 #include "rtunit/intersection/box_test.h"
 #include "rtunit/intersection/triangle_test.h"
 #include "rtunit/node_format.h"
+#include "rtunit/structure/micromaps.h"
 #include "tests/support/rt_launch.h"
 
 namespace glint::rt::test {
@@ -27,10 +28,16 @@ struct BottomScene {
   BottomScene(const BottomScene&) = delete;  // the geometries would point into the other
   std::deque<Positions> positions;
   std::deque<std::vector<Bounds>> boxes;
+  std::deque<Micromaps> micromaps;
   BottomLevel level;
   void add_triangles(Positions p, bool opaque) {
     positions.push_back(std::move(p));
     level.geometries.push_back(triangles(positions.back(), opaque));
+  }
+  // Gives the geometry that was added last its maps.
+  void add_micromaps(Micromaps maps) {
+    micromaps.push_back(std::move(maps));
+    level.geometries.back().micromaps = &micromaps.back();
   }
   void add_boxes(std::vector<Bounds> b, bool opaque) {
     boxes.push_back(std::move(b));
@@ -189,13 +196,40 @@ class BruteForce {
   std::vector<InstanceLeaf> leaves_;
 };
 
-// Returns `closed` triangles that need shaders and twice as many others, boxes, and instances that overlap.
+// Returns maps that say what decide() says of `count` triangles, or that they do not know it. Some triangles
+// are the same all over.
+inline Micromaps maps_like_decide(Random& random, uint32_t count, const MicromapFormat& format) {
+  Micromaps out{format, {}, {}};
+  for (uint32_t primitive = 0; primitive < count; ++primitive) {
+    const MicroState known = primitive % 3 ? MicroState::Opaque : MicroState::Transparent;
+    const auto state = [&] {
+      return format.two_states || random.below(2) ? known : MicroState(2 + random.below(2));
+    };
+    if (random.below(3) == 0) {
+      out.index.push_back(Micromaps::uniform(state()));
+      continue;
+    }
+    std::vector<uint8_t> map(format.bytes());
+    for (uint32_t i = 0; i < format.num_states(); ++i) {
+      const uint32_t bit = i * format.bits();
+      map[bit / 8] = uint8_t(map[bit / 8] | uint32_t(state()) << bit % 8);
+    }
+    out.index.push_back(int32_t(out.states.size() / map.size()));
+    out.states.insert(out.states.end(), map.begin(), map.end());
+  }
+  return out;
+}
+
+// Returns `closed` triangles that need shaders or have maps that know some of the answers, twice as many
+// others, boxes, and instances that overlap.
 inline Scene crowd(uint64_t seed, uint32_t closed) {
   Random random{seed};
   Scene out;
   BottomScene& all = out.bottoms.emplace_back();
   all.add_triangles(soup(random, 2 * closed, 10, 4), true);
   all.add_triangles(soup(random, closed, 10, 4), false);
+  Random of_maps{seed + 1};
+  all.add_micromaps(maps_like_decide(of_maps, closed, {false, uint32_t(seed % 5)}));
   std::vector<Bounds> boxes;
   for (int i = 0; i < 20; ++i) {
     const auto p = random.point(10);

@@ -90,6 +90,25 @@ TEST_CASE("other positions, indices, flags, transforms, formats, layouts and bui
   CHECK(is_found(folder, strip.level()));
 }
 
+TEST_CASE("other micromaps find nothing") {
+  const Folder folder;
+  const Strip strip;
+  const auto with = [&](const rt::Micromaps& maps) {
+    rt::BottomLevel level = strip.level();
+    level.geometries[0].micromaps = &maps;
+    return is_found(folder, level);
+  };
+  const rt::Micromaps maps{{false, 1}, std::vector<int32_t>(98, 0), {0x12}};
+  rt::Micromaps other_state = maps, other_index = maps, other_format = maps;
+  other_state.states[0] = 0x13;
+  other_index.index[7] = rt::Micromaps::uniform(rt::MicroState::Opaque);
+  other_format.format.two_states = true;
+  is_found(folder, strip.level());
+  for (const rt::Micromaps& one : {maps, other_state, other_index, other_format}) CHECK_FALSE(with(one));
+  CHECK(with(maps));
+  CHECK(is_found(folder, strip.level()));
+}
+
 TEST_CASE("small structures are built each time and leave no files") {
   const Folder folder;
   const Strip strip;
