@@ -192,6 +192,18 @@ TEST_CASE("in the unit a filter finds the same hits, is told of each look-up, an
   }
 }
 
+TEST_CASE("a filter is refused where instructions walk rays, with the reason") {
+  for (const std::string& name : Registry<LeafFilter>::names()) {
+    CAPTURE(name);
+    Params params;
+    params.leaf_filter.name = name;
+    CHECK(RtUnit::why_not_together(params) == "");
+    params.unit = kSoftware;
+    const bool is_refused = RtUnit::why_not_together(params).find("ask no filter") != std::string::npos;
+    CHECK(is_refused == (name != LeafFilter::kNone));
+  }
+}
+
 // Returns the cycle in which a ray comes back that meets one triangle, whose map is transparent.
 Cycle time_of(const char* filter, const Micromaps& maps, uint64_t& requests) {
   const Positions corners{{-9, -9, 5}, {9, -9, 5}, {0, 9, 5}};
