@@ -13,11 +13,18 @@ namespace glint::core {
 
 inline constexpr uint32_t kMaxWarpsPerScheduler = 64;  // number of bits of IssueView::ready
 
+// Holds what a scheduler sees of its warps' rays. All is 0 unless the policy's needs_rt() holds.
+struct RtView {
+  uint64_t at_rays = 0;   // bit i: the next instruction of warp i gives rays to the RT unit
+  bool has_room = false;  // The RT unit takes another warp.
+};
+
 // Holds what a scheduler sees of its warps in one cycle. Warps are numbered locally, from 0.
 struct IssueView {
   uint64_t ready = 0;             // bit i: warp i can issue this cycle; at least one bit is set
   std::span<const uint64_t> age;  // launch number of each warp: smaller is older; unique among resident warps
   Cycle now = 0;
+  RtView rt;
 };
 
 // Contract (tests/contract/issue_scheduler_test.cpp):
@@ -34,6 +41,8 @@ class IssueScheduler {
     uint32_t num_warps = 1;  // local warps: 1 to kMaxWarpsPerScheduler
   };
   virtual ~IssueScheduler() = default;
+  // Returns whether pick() looks at IssueView::rt. It is asked once.
+  virtual bool needs_rt() const { return false; }
   virtual uint32_t pick(const IssueView& view) = 0;
 };
 

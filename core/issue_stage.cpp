@@ -155,7 +155,7 @@ void IssueStage::run(Scheduler& scheduler, Cycle now) {
     if (core_.counts.profile) core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));
     return;
   }
-  issue(slot_of(scheduler, scheduler.pick(ready, now)), now);
+  issue(slot_of(scheduler, scheduler.pick(ready, now, doors_)), now);
 }
 
 // Tells observers of a selected warp. Model: a warp that is ready to go through a door counts as waiting for

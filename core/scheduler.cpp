@@ -10,6 +10,7 @@ Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params, Alarm
     : index_(index),
       alarms_(alarms),
       policy_(params.issue.make({(slots + params.schedulers - 1) / params.schedulers})),
+      needs_rt_(policy_->needs_rt()),
       has_latches_(params.dispatch_latch),
       has_banks_(params.register_file.banks > 0) {
 }

@@ -121,8 +121,11 @@ class Scheduler {
     alarms_.sleep_less(index_, next);
   }
   // Chooses one warp of `ready`, which is not 0. The cycle is spent on issuing.
-  uint32_t pick(uint64_t ready, Cycle now) {
-    const uint32_t warp = policy_->pick({ready, {age_.data(), age_.size()}, now});
+  uint32_t pick(uint64_t ready, Cycle now, const Doors& doors) {
+    IssueView view{ready, {age_.data(), age_.size()}, now, {}};
+    if (needs_rt_) [[unlikely]]
+      view.rt = {resident_ & needs_door_[size_t(Door::RtUnit)], doors.rt.can_accept()};
+    const uint32_t warp = policy_->pick(view);
     GLINT_DCHECK(ready >> warp & 1, "the issue policy chose warp {}, which is not ready", warp);
     reason_ = Stall::Issued;
     wake();
@@ -209,6 +212,7 @@ class Scheduler {
   Stall reason_ = Stall::NoWarp;
   Cycle accounted_until_ = 0;
   std::unique_ptr<IssueScheduler> policy_;
+  const bool needs_rt_;     // IssueScheduler::needs_rt()
   const bool has_latches_;  // Params::dispatch_latch
   const bool has_banks_;    // Warps that find_ready() returns may be held back after all.
 };

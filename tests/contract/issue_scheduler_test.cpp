@@ -35,10 +35,11 @@ TEST_CASE("every issue policy picks a ready warp, and the same one for the same 
       for (Cycle now = 0; now < 2000; ++now) {
         const uint64_t ready = random() & random() & all;
         if (!ready) continue;
-        const uint32_t pick = one->pick({ready, age, now});
+        const RtView rt{random() & all, random() % 2 == 0};
+        const uint32_t pick = one->pick({ready, age, now, rt});
         REQUIRE(pick < n);
         REQUIRE((ready >> pick & 1) == 1);
-        REQUIRE(two->pick({ready, age, now}) == pick);
+        REQUIRE(two->pick({ready, age, now, rt}) == pick);
       }
     }
 }
@@ -49,10 +50,13 @@ TEST_CASE("every issue policy reaches every warp when picked warps have to wait"
     constexpr uint32_t kWarps = 16;
     const auto policy = make(name, kWarps);
     const std::vector<uint64_t> age = ages(kWarps);
-    uint64_t ready = 0xffff;
-    for (Cycle now = 0; ready; ++now) {  // a picked warp never becomes ready again, so each pick is a new one
-      REQUIRE(now < kWarps);
-      ready &= ~(uint64_t{1} << policy->pick({ready, age, now}));
+    for (const RtView& rt : {RtView{}, RtView{0x00f0, false}, RtView{0x0f03, true}}) {
+      uint64_t ready = 0xffff;
+      for (Cycle now = 0; ready;
+           ++now) {  // a picked warp never becomes ready again, so each pick is a new one
+        REQUIRE(now < kWarps);
+        ready &= ~(uint64_t{1} << policy->pick({ready, age, now, rt}));
+      }
     }
   }
 }
@@ -106,6 +110,25 @@ TEST_CASE("oldest never stays with a younger warp") {
 
   CHECK(oldest->pick({0b1001, age, 0}) == 0);
   CHECK(oldest->pick({0b1111, age, 1}) == 1);
+}
+
+TEST_CASE("rt_aware fills an RT unit with room, and is greedy then oldest for one without") {
+  const auto aware = make("rt_aware", 4);
+  CHECK(aware->needs_rt());
+  CHECK_FALSE(make("gto", 4)->needs_rt());
+  const std::vector<uint64_t> age = {30, 10, 20, 40};
+  const RtView room{0b1001, true}, full{0b1001, false};
+
+  CHECK(aware->pick({0b1111, age, 0, room}) == 0);  // the oldest of those at rays, 0 and 3
+  CHECK(aware->pick({0b0111, age, 1, full}) == 0);  // the same again
+  CHECK(aware->pick({0b0110, age, 2, full}) == 1);  // the oldest
+  CHECK(aware->pick({0b0110, age, 3, full}) == 1);
+  CHECK(aware->pick({0b0100, age, 4, full}) == 2);
+  // Warp 1 has issued two instructions and warp 2 one. Warp 0 has given its rays, and 3 has issued nothing.
+  CHECK(aware->pick({0b1110, age, 5, {0, true}}) == 1);
+  CHECK(aware->pick({0b1100, age, 6, {0, true}}) == 2);
+  // A new warp in the place of warp 1 has issued nothing yet.
+  CHECK(aware->pick({0b1110, std::vector<uint64_t>{30, 50, 20, 40}, 7, {0, true}}) == 2);
 }
 
 TEST_CASE("the default issue policy is one of several that are registered") {
