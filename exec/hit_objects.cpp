@@ -74,11 +74,9 @@ Address find_instance(const mem::AddressSpace& memory, Address structure, uint32
   const auto* bytes = memory.find(structure, sizeof header);
   if (!bytes) return 0;
   std::memcpy(&header, bytes, sizeof header);
-  if (header.magic != rt::StructureHeader::kMagic || header.level != 1 ||
-      header.format >= uint8_t(rt::FormatId::Count))
-    return 0;
-  return find_instance(memory, *rt::make_format(rt::FormatId(header.format)), structure, rt::kRootBlock,
-                       instance);
+  if (header.magic != rt::StructureHeader::kMagic || header.level != 1) return 0;
+  const rt::NodeFormat* format = rt::find_format(header.format);
+  return format ? find_instance(memory, *format, structure, rt::kRootBlock, instance) : 0;
 }
 
 }  // namespace

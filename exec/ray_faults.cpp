@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "exec/hit_records.h"
+#include "rtunit/node_format.h"
 #include "rtunit/structure/structure.h"
 
 namespace glint::exec {
@@ -24,11 +25,26 @@ bool RayFaults::let_pass_hit_record(const WarpContext& warp, int lane, const rt:
                   hit.geometry, ray.sbt_stride, ray.sbt_offset));
 }
 
+namespace {
+
+// Says what is wrong with a structure that no ray can enter.
+std::string why_not_entered(const mem::AddressSpace& memory, Address structure) {
+  if (const std::byte* bytes = memory.find(structure, sizeof(rt::StructureHeader))) {
+    const auto header = rt::load<rt::StructureHeader>(bytes);
+    if (header.magic == rt::StructureHeader::kMagic && header.level == 1 && !rt::find_format(header.format))
+      return fmt::format("its header names the node format {:#x}, which no policy of bvh.format has",
+                         header.format);
+  }
+  return whereabouts(memory, structure, sizeof(rt::StructureHeader));
+}
+
+}  // namespace
+
 bool RayFaults::let_pass_structure(const WarpContext& warp, int lane, std::string_view verb,
                                    Address structure) {
   return gate_.let_pass(warp, lane, FaultKind::Structure, [&] {
     return fmt::format("{} {:#x}, which is not a top-level acceleration structure: {}", verb, structure,
-                       whereabouts(*world_.memory, structure, sizeof(rt::StructureHeader)));
+                       why_not_entered(*world_.memory, structure));
   });
 }
 

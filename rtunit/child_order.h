@@ -13,6 +13,8 @@ struct ChildHits {
   int count = 0;
   const float* t_enter = nullptr;
   const NodeRef* child = nullptr;
+  const uint8_t* slot = nullptr;  // where each lies in the node
+  uint32_t octant = 0;            // bit a: the ray's direction along axis a is negative
 };
 
 // Contract (tests/contract/rt_child_order_test.cpp):
@@ -24,6 +26,8 @@ class ChildOrder {
   struct Context {};
   virtual ~ChildOrder() = default;
   virtual void sort(const ChildHits& hits, uint8_t* order) const = 0;
+  // Returns whether the order means something only for slots by octant (NodeFormat::has_octant_slots()).
+  virtual bool needs_octant_slots() const { return false; }
   // Returns the order that rays are told to use. Null stands for nearest_first(), which is compiled into the
   // traversal.
   virtual const ChildOrder* for_rays() const { return this; }

@@ -1,8 +1,7 @@
 // Declares the interface of the policies that choose how internal nodes are written.
 //
-// A format is a pair of files in rtunit/formats/. `<name>.cpp` encodes nodes and registers the format.
-// `<name>.h` holds a struct with kWidth, kNodeBytes and the static test() that the traversal is compiled for
-// (traversal.cpp lists it by FormatId).
+// A format is one file in rtunit/formats/. Its class says how nodes are written and tested, and
+// rtunit/traversal/format_of.h compiles the traversal for it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -17,7 +16,13 @@
 #include "rtunit/structure/tree.h"
 #include "rtunit/tree_layout.h"
 
+namespace glint::mem {
+class AddressSpace;
+}
+
 namespace glint::rt {
+
+struct RayState;
 
 // The largest number of children of a node in any format.
 inline constexpr uint32_t kMaxWidth = 16;
@@ -28,7 +33,17 @@ struct DecodedChild {
   Bounds bounds;  // as the traversal sees it
 };
 
+// Holds the traversal as it is compiled for a format (rtunit/traversal/format_of.h).
+struct NodeWalk {
+  FormatId format;
+  uint32_t node_bytes;
+  void (*step)(RayState&, const std::byte*);         // rtunit/traversal/traversal.h, step()
+  void (*run)(RayState&, const mem::AddressSpace&);  // the same, run()
+};
+
 // Contract (tests/contract/rt_node_format_test.cpp):
+//  - arrange() may only exchange the children of a node among themselves. The layout, place() and encode()
+//    come afterwards.
 //  - place() gives each node bytes of its own, behind the header. The root lies at block kRootBlock. Where
 //  the
 //    format leaves a choice, nodes lie in the order that it is given.
@@ -42,11 +57,19 @@ class NodeFormat {
   static constexpr PolicyKind kKind{"bvh.format", "rtunit/formats"};
   struct Context {};
   virtual ~NodeFormat() = default;
-  virtual FormatId id() const = 0;
   // Returns the largest number of children of a node, 2 to kMaxWidth.
   virtual uint32_t width() const = 0;
   // Returns the bytes of an internal node, which a ray fetches whole. They are a multiple of kBlockBytes.
   virtual uint32_t node_bytes() const = 0;
+  virtual const NodeWalk& walk() const = 0;
+  // Returns whether bit a of a child's number in its node says on which side of axis a the child lies
+  // (rtunit/formats/octant_slots.h).
+  virtual bool has_octant_slots() const { return false; }
+  // Brings the children of each node into the order in which the format writes them, on up to `threads`
+  // threads.
+  virtual void arrange(BuildTree& tree, uint32_t threads) const {
+    static_cast<void>(tree), static_cast<void>(threads);
+  }
   virtual Placement place(const BuildTree& tree, const NodeOrder& order) const = 0;
   virtual mem::HostBlock encode(const BuildTree& tree, const Placement& placement,
                                 uint32_t threads) const = 0;
@@ -56,6 +79,10 @@ class NodeFormat {
 };
 
 std::unique_ptr<NodeFormat> make_format(std::string_view name);
-std::unique_ptr<NodeFormat> make_format(FormatId id);
+
+// Returns the format with an id, with its default parameters, or null when there is none. The formats are
+// those that are registered at the first call: plugins come before the first ray. It throws UserError when
+// two of them have the same id.
+const NodeFormat* find_format(FormatId id);
 
 }  // namespace glint::rt

@@ -12,11 +12,14 @@
 #include "rtunit/intersection/box_test.h"
 #include "rtunit/intersection/ray_space.h"
 #include "rtunit/structure/placement.h"
+#include "rtunit/traversal/format_of.h"
 
 namespace glint::rt {
 
-template <int kChildren>
-struct FloatBoxes {
+// A format derives from FloatBoxes<itself, number of children>.
+template <class Format, int kChildren>
+class FloatBoxes : public FormatOf<Format> {
+ public:
   static constexpr int kWidth = kChildren;
   static constexpr NodeRef kNone = 0;  // Block 0 is the header, so no child has this reference.
 
@@ -38,9 +41,7 @@ struct FloatBoxes {
     const std::byte* node_;
   };
 
-  // Returns a mask of the children that the ray enters in [t_min, t_max], and writes where it does to
-  // `t_enter`, which has room for kPlanes. It counts the tests. Planes of missing children are whatever
-  // follows in the node, and nobody looks at what they give.
+  // Planes of missing children are whatever follows in the node, and nobody looks at what they give.
   static uint32_t test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max,
                        float* t_enter, uint32_t& box_tests) {
     Four t_near = all<Four>(-__builtin_inff()), t_far = all<Four>(__builtin_inff());
@@ -60,7 +61,11 @@ struct FloatBoxes {
     return mask_of(t_near <= t_far) & ((1u << count) - 1);
   }
 
-  static mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads) {
+  Placement place(const BuildTree& tree, const NodeOrder& order) const override {
+    return mixed_placement(tree, order, kNodeBytes);
+  }
+
+  mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads) const override {
     return encoded(tree, placement, threads, [&](const BuildTree::Node& from) {
       Node node;
       int i = 0;
@@ -75,7 +80,7 @@ struct FloatBoxes {
     });
   }
 
-  static uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) {
+  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override {
     Node node;
     std::memcpy(&node, bytes, sizeof node);
     uint32_t count = 0;

@@ -12,6 +12,7 @@
 #include "rtunit/intersection/box_test.h"
 #include "rtunit/intersection/ray_space.h"
 #include "rtunit/structure/placement.h"
+#include "rtunit/traversal/format_of.h"
 
 namespace glint::rt {
 
@@ -31,10 +32,12 @@ constexpr uint32_t get(uint64_t bytes, int i) {
 }
 }  // namespace word_bytes
 
-// A format has kWidth; a Node with origin, exponent, num_children, kind, low and high; and References, which
-// is made of a Node's bytes and has the reference of child i as [i].
+// A format derives from QuantisedBoxes<itself>. Besides what rtunit/traversal/format_of.h asks for, it has a
+// Node with origin, exponent, low and high. One that has num_children and kind, too, can use encode_linked();
+// another hides present().
 template <class Format>
-struct QuantisedBoxes {
+class QuantisedBoxes : public FormatOf<Format> {
+ public:
   static constexpr int kPlanes = 8;
 
   // Returns the kinds of a node's children, a byte each. What lies behind the last child means nothing.
@@ -42,9 +45,16 @@ struct QuantisedBoxes {
     return load<uint64_t>(node + offsetof(typename Format::Node, kind)) & 7 * word_bytes::kOnes;
   }
 
-  // Returns a mask of the children that the ray enters in [t_min, t_max], and writes where it does to
-  // `t_enter`, which has room for kPlanes. It counts the tests. Planes of missing children are whatever
-  // follows in the node, and nobody looks at what they give.
+  // Says which children a node has.
+  struct Present {
+    uint32_t mask, count;
+  };
+  static Present present(const std::byte* node) {
+    const int count = num_children(uint8_t(node[offsetof(typename Format::Node, num_children)]));
+    return {(1u << count) - 1, uint32_t(count)};
+  }
+
+  // Planes of missing children are whatever follows in the node, and nobody looks at what they give.
   static uint32_t test(const std::byte* bytes, const RaySpace& space, float t_min, float t_max,
                        float* t_enter, uint32_t& box_tests) {
     using Node = typename Format::Node;
@@ -65,9 +75,9 @@ struct QuantisedBoxes {
     }
     for (int half = 0; half < 2; ++half) clip_to_ray(t_min, t_max, t_near[half], t_far[half]);
     std::memcpy(t_enter, t_near, sizeof t_near);
-    const int count = num_children(uint8_t(bytes[offsetof(Node, num_children)]));
-    box_tests += uint32_t(count);
-    return (mask_of(t_near[0] <= t_far[0]) | mask_of(t_near[1] <= t_far[1]) << 4) & ((1u << count) - 1);
+    const Present children = Format::present(bytes);
+    box_tests += children.count;
+    return (mask_of(t_near[0] <= t_far[0]) | mask_of(t_near[1] <= t_far[1]) << 4) & children.mask;
   }
 
   // Returns a node of the tree without its references.
@@ -80,7 +90,8 @@ struct QuantisedBoxes {
     }
     Grid grid;
     const std::span boxes(bounds.data(), node.num_children);
-    for (size_t a = 0; a < 3; ++a) quantise(boxes, a, grid, {node.low[a], node.high[a]});
+    for (size_t a = 0; a < 3; ++a)
+      quantise<kMostInByte, uint8_t>(boxes, a, grid, {node.low[a], node.high[a]});
     node.origin = grid.origin;
     node.exponent = grid.exponent;
     return node;
@@ -88,8 +99,8 @@ struct QuantisedBoxes {
 
   // Returns the bytes of the whole structure. It calls link(node, children) to set a node's references.
   template <class Link>
-  static mem::HostBlock encode(const BuildTree& tree, const Placement& placement, uint32_t threads,
-                               Link link) {
+  static mem::HostBlock encode_linked(const BuildTree& tree, const Placement& placement, uint32_t threads,
+                                      Link link) {
     return encoded(tree, placement, threads, [&](const BuildTree::Node& from) {
       typename Format::Node node = boxes_of(tree, from);
       link(node, children_of(tree, from));
@@ -97,21 +108,22 @@ struct QuantisedBoxes {
     });
   }
 
-  static uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) {
+  uint32_t decode(const std::byte* bytes, std::span<DecodedChild> out) const override {
     typename Format::Node node;
     std::memcpy(&node, bytes, sizeof node);
     const Grid grid{node.origin, node.exponent};
     const typename Format::References references(bytes);
-    const int count = num_children(node.num_children);
-    for (int i = 0; i < count; ++i) {
-      DecodedChild& child = out[size_t(i)];
+    uint32_t count = 0;
+    for (uint32_t rest = Format::present(bytes).mask; rest; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      DecodedChild& child = out[count++];
       child.node = references[i];
       for (size_t a = 0; a < 3; ++a) {
         child.bounds.low[a] = Grid::plane(node.origin[a], node.low[a][i], grid.step(a));
         child.bounds.high[a] = Grid::plane(node.origin[a], node.high[a][i], grid.step(a));
       }
     }
-    return uint32_t(count);
+    return count;
   }
 
  private:

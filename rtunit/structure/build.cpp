@@ -80,6 +80,7 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves leaves, cons
   info.primitives = leaves.primitives;
   info.contents = leaves.contents;
   tree.leaf_bytes = std::move(leaves.bytes);
+  format->arrange(tree, threads);
   const NodeOrder order = options.layout.make({})->order(tree, format->node_bytes());
   Placement placement = format->place(tree, order);
   check_size(name, placement.bytes);
@@ -104,8 +105,7 @@ EncodedBottom encode(const std::string& name, uint8_t level, Leaves leaves, cons
     std::copy(leaves.micromaps.begin(), leaves.micromaps.end(),
               bytes.data() + size_t{header.micromaps} * kBlockBytes);
   info.bytes = bytes.size();
-  info.format = format->id();
-  header.format = uint8_t(format->id());
+  header.format = info.format = format->walk().format;
   header.level = level;
   header.contents = info.contents;
   header.bounds = info.bounds;
@@ -162,15 +162,6 @@ Bounds world_bounds(const std::array<float, 12>& m, const Bounds& box) {
 
 }  // namespace
 
-std::unique_ptr<NodeFormat> make_format(std::string_view name) {
-  return Registry<NodeFormat>::instance().entry(name).make_default({});
-}
-std::unique_ptr<NodeFormat> make_format(FormatId id) {
-  for (const std::string& name : Registry<NodeFormat>::names())
-    if (auto format = make_format(name); format->id() == id) return format;
-  return nullptr;
-}
-
 EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input, const BuildOptions& options,
                             uint32_t threads) {
   Leaves leaves = leaves_of(input, options.pair_triangles, threads);
@@ -199,7 +190,7 @@ std::string why_unreachable(const Instance& instance, const StructureInfo& botto
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
                         std::span<const Instance> instances, std::span<const StructureInfo> bottoms,
                         const BuildOptions& options) {
-  const FormatId format = options.format.make({})->id();
+  const FormatId format = options.format.make({})->walk().format;
   std::vector<BuildItem> items;
   std::vector<InstanceLeaf> instance_leaves;
   Leaves leaves;

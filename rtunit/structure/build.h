@@ -65,7 +65,7 @@ struct StructureInfo {
   Address address = 0;  // virtual address of the header, which descriptors and rays hold
   Bounds bounds{};
   uint64_t bytes = 0;
-  FormatId format = FormatId::Bvh6;
+  FormatId format = 0;
   uint32_t nodes = 0;  // internal nodes
   uint32_t leaves = 0;
   uint32_t depth = 0;       // number of internal nodes from the root to the deepest leaf

@@ -44,12 +44,14 @@ inline Placement mixed_placement(const BuildTree& tree, const NodeOrder& order, 
   return out;
 }
 
-// Places internal nodes one behind the other. The leaves lie behind them at multiples of their own 64 bytes.
-// Internal children of a node follow each other without gaps, and so do its leaves.
-inline Placement split_placement(const BuildTree& tree, const NodeOrder& order, uint32_t node_bytes) {
+// Places internal nodes one behind the other; those behind the root begin at a multiple of `alignment`. The
+// leaves lie behind them at multiples of their own 64 bytes. Internal children of a node follow each other
+// without gaps, and so do its leaves.
+inline Placement split_placement(const BuildTree& tree, const NodeOrder& order, uint32_t node_bytes,
+                                 uint32_t alignment = kBlockBytes) {
   Placement out{mem::HostArray<uint32_t>(tree.nodes.size()), 0};
   out.block[0] = kRootBlock;
-  uint64_t nodes = sizeof(StructureHeader) + node_bytes, leaves = 0;
+  uint64_t nodes = (sizeof(StructureHeader) + node_bytes + alignment - 1) / alignment * alignment, leaves = 0;
   in_order(tree, order, [&](uint32_t child) {
     uint64_t& end = tree.nodes[child].kind == NodeKind::Internal ? nodes : leaves;
     out.block[child] = uint32_t(end / kBlockBytes);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 #include "base/types.h"
 
@@ -45,9 +46,15 @@ constexpr uint32_t leaf_bytes(NodeKind kind) {
   return kind == NodeKind::Instance ? 2 * kLeafBytes : kLeafBytes;
 }
 
-// Names the node formats that the traversal is compiled for (rtunit/formats/). A header names its format; a
-// bottom level has that of the top level above it.
-enum class FormatId : uint8_t { Bvh6, Bvh2, Bvh4, Bvh8, Count };
+// Names a node format in a structure's header: the hash (FNV-1a) of the name that chooses the format. So it
+// is the same in every build, and a format from a plugin needs no number from anybody. A bottom level has the
+// format of the top level above it.
+using FormatId = uint32_t;
+constexpr FormatId format_id(std::string_view name) {
+  FormatId hash = 0x811c'9dc5;
+  for (const char c : name) hash = (hash ^ uint8_t(c)) * 0x0100'0193;
+  return hash;
+}
 
 struct Bounds {
   std::array<float, 3> low{}, high{};
@@ -62,16 +69,17 @@ inline constexpr uint8_t kNotOpaque = 1, kProcedural = 2;
 struct StructureHeader {
   static constexpr uint32_t kMagic = 0x53424c47;  // "GLBS"
   uint32_t magic = kMagic;
-  uint8_t format = 0, level = 0;  // level: 0 bottom, 1 top
-  uint8_t contents = 0;           // of the top level: of all its instances together
-  uint8_t pad = 0;
+  uint8_t level = 0;     // 0 bottom, 1 top
+  uint8_t contents = 0;  // of the top level: of all its instances together
+  uint8_t pad[2]{};
   Bounds bounds;                // in the level's own space; empty (low > high) without primitives
   uint32_t num_primitives = 0;  // active triangles and boxes, or active instances
   uint32_t stack_need = 0;      // entries that the worst ray needs in this structure
   uint64_t bytes = 0;
   uint32_t treelets = 0;   // block of the table of treelets (rtunit/treelets.h); 0: there is none
   uint32_t micromaps = 0;  // block of the opacity micromaps (rtunit/structure/micromaps.h); 0: there are none
-  uint32_t reserved[2]{};
+  FormatId format = 0;
+  uint32_t reserved = 0;
 };
 static_assert(sizeof(StructureHeader) == kRootBlock * kBlockBytes);
 

@@ -20,6 +20,7 @@ struct BuildTree {
     uint32_t leaf_block = 0;   // blocks from the start of leaf_bytes, for leaves
     NodeKind kind = NodeKind::Internal;
     uint8_t num_children = 0;
+    uint8_t slot = 0;  // place among its parent's children, for formats that leave places empty
   };
   mem::HostArray<Node> nodes;
   mem::HostArray<uint32_t> children;  // indices into nodes

@@ -41,16 +41,15 @@ class Validation {
       error("{:#x} holds no header of a level-{} structure", address, level);
       return {};
     }
-    const auto format =
-        header.format < uint8_t(FormatId::Count) ? make_format(FormatId(header.format)) : nullptr;
+    const NodeFormat* format = find_format(header.format);
     if (!format) {
-      error("{:#x}: unknown node format {}", address, header.format);
+      error("{:#x}: unknown node format {:#x}", address, header.format);
       return {};
     }
     const Frame outer = frame_;
-    if (outer.format && outer.format->id() != format->id())
-      error("{:#x}: node format {} below another", address, header.format);
-    frame_ = {address, header.bytes, format.get()};
+    if (outer.format && outer.format != format)
+      error("{:#x}: node format {:#x} below another", address, header.format);
+    frame_ = {address, header.bytes, format};
     std::set<Key> primitives;
     primitives.swap(primitives_);
     Measured out = internal(kRootBlock, 0);

@@ -14,6 +14,7 @@
 namespace glint::rt {
 
 class LeafFilter;
+struct NodeWalk;
 
 // Holds data only and may be copied. The functions that work on it are in rtunit/traversal/traversal.h. What
 // a visit of a node needs lies together in the first cache lines of the host.
@@ -25,7 +26,6 @@ struct alignas(64) RayState {
   // The RT unit does not hold this number of entries at the bottom. The stack model sets it.
   int16_t stack_off_chip = 0;
   RayStatus status = RayStatus::Idle;
-  uint8_t format = 0;      // FormatId of the structure
   uint8_t node_bytes = 0;  // size of its internal nodes
   bool broken = false;     // The structure's bytes led outside memory, and the ray ended without a meaning.
   int16_t stack_in_memory = 0;  // This number of those entries lie in memory. The stack model sets it.
@@ -34,6 +34,7 @@ struct alignas(64) RayState {
   CandidateTable* table = nullptr;
   // The RT unit sets this when its stack model needs a path; begin() sets null.
   RayPath* path = nullptr;
+  const NodeWalk* walk = nullptr;  // of the structure's node format (rtunit/node_format.h)
   TraversalRules rules;
   // The traversal counts these for probes and statistics.
   uint32_t nodes_visited = 0, box_tests = 0, triangle_tests = 0;

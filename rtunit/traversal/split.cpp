@@ -32,7 +32,7 @@ void split_off(RayState& from, size_t entry, RayState& part) {
   const bool in_top_level = int(entry) < from.bottom_stack_base;
   part.ray = from.ray;
   part.rules = from.rules;
-  part.format = from.format;
+  part.walk = from.walk;
   part.node_bytes = from.node_bytes;
   part.committed = from.committed;
   part.status = RayStatus::Traversing;

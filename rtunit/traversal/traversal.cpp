@@ -3,18 +3,14 @@
 #include "rtunit/traversal/traversal.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <iterator>
 
 #include "base/check.h"
-#include "rtunit/formats/bvh2.h"
-#include "rtunit/formats/bvh4.h"
-#include "rtunit/formats/bvh6.h"
-#include "rtunit/formats/bvh8.h"
+#include "rtunit/intersection/box_test.h"
 #include "rtunit/intersection/triangle_test.h"
 #include "rtunit/leaf_filter.h"
-#include "rtunit/traversal/hit_rules.h"
+#include "rtunit/node_format.h"
+#include "rtunit/traversal/visit_rules.h"
 
 namespace glint::rt {
 
@@ -31,79 +27,6 @@ bool passes(RayState& s, RayStatus needed) {
   s.table->add({s.candidate, s.candidate_procedural, s.candidate_opaque});
   if (s.table->is_full()) drop_beaten(s);
   return !s.table->is_full();
-}
-
-void push(RayState& s, NodeRef node, float t_enter) {
-  if (s.stack_size >= kStackEntries) [[unlikely]]
-    return break_off(s);  // Only a structure that a shader has overwritten is that deep.
-  if (s.path) [[unlikely]]
-    s.path->parent[size_t(s.stack_size)] = s.path->depth;
-  s.stack.set(size_t(s.stack_size++), {node, t_enter});
-  if (s.stack_size > s.stack_peak) s.stack_peak = s.stack_size;
-}
-
-bool culled_by_kind(const RayState& s, NodeKind kind) {
-  return (kind == NodeKind::Triangle && has(s, ray_flag::kSkipTriangles)) ||
-         (kind == NodeKind::Procedural && has(s, ray_flag::kSkipAabbs));
-}
-
-// Returns the children of `entered` whose kinds the ray does not skip.
-template <class References>
-uint32_t without_skipped(const RayState& s, uint32_t entered, const References& child) {
-  uint32_t out = 0;
-  for (uint32_t rest = entered; rest; rest &= rest - 1)
-    if (!culled_by_kind(s, kind_of(child[std::countr_zero(rest)]))) out |= rest & -rest;
-  return out;
-}
-
-// Pushes the children with the nearest on top. Of two at the same distance, the one with the lower index
-// comes above the other. `top` is where the ray's next entry lies.
-template <class References>
-void push_nearest_first(RayState& s, StackEntry* top, uint32_t entered, const float* t_enter,
-                        const References& child) {
-  int count = 0;
-  for (uint32_t rest = entered; rest; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
-    int at = count++;
-    for (; at > 0 && top[at - 1].t_enter <= t_enter[i]; --at) top[at] = top[at - 1];
-    top[at] = {child[i], t_enter[i]};
-  }
-  s.stack_size = int16_t(s.stack_size + count);
-  s.stack_peak = std::max(s.stack_peak, s.stack_size);
-}
-
-// Pushes the children in the order that the ray's rules say.
-template <class Format>
-void push_by_rules(RayState& s, uint32_t entered, const float* t_enter,
-                   const typename Format::References& child) {
-  float t[Format::kWidth];
-  NodeRef node[Format::kWidth];
-  int hits = 0;
-  for (uint32_t rest = entered; rest; rest &= rest - 1, ++hits) {
-    const int i = std::countr_zero(rest);
-    t[hits] = t_enter[i];
-    node[hits] = child[i];
-  }
-  uint8_t order[Format::kWidth];
-  if (!s.rules.order)
-    nearest_first({hits, t, node}, order);
-  else
-    s.rules.order->sort({hits, t, node}, order);
-  for (int i = hits - 1; i >= 0; --i) push(s, node[order[i]], t[order[i]]);  // The first is on top.
-}
-
-template <class Format>
-void visit_internal(RayState& s, const std::byte* bytes) {
-  alignas(Four) float t_enter[Format::kPlanes];
-  uint32_t entered = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, s.box_tests);
-  const typename Format::References child(bytes);
-  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs)) [[unlikely]]
-    entered = without_skipped(s, entered, child);
-  StackEntry* top = s.stack.near_room(size_t(s.stack_size), Format::kWidth);
-  if (top && !s.rules.order && !s.path) [[likely]]
-    push_nearest_first(s, top, entered, t_enter, child);
-  else
-    push_by_rules<Format>(s, entered, t_enter, child);
 }
 
 // Enters the instance whose leaf lies at `at`. The node of its structure is the ray's next one.
@@ -237,7 +160,9 @@ void visit_procedural(RayState& s, const std::byte* bytes) {
   passes(s, RayStatus::NeedsIntersection);
 }
 
-void visit_leaf(RayState& s, const std::byte* bytes, const StackEntry& entry, NodeKind kind) {
+}  // namespace
+
+void rules::visit_leaf(RayState& s, const std::byte* bytes, const StackEntry& entry, NodeKind kind) {
   switch (kind) {
     case NodeKind::Instance:
       return visit_instance(s, bytes, entry);
@@ -251,55 +176,7 @@ void visit_leaf(RayState& s, const std::byte* bytes, const StackEntry& entry, No
   }
 }
 
-// Notes the node that is about to be visited as the last of its depth.
-void remember(const RayState& s, RayPath& path) {
-  path.depth = uint8_t(path.parent[size_t(s.stack_size) - 1] + 1);
-  path.node[path.depth] = next_fetch(s);
-}
-
-template <class Format>
-void step_as(RayState& s, const std::byte* bytes) {
-  if (s.path) [[unlikely]]
-    remember(s, *s.path);
-  const StackEntry entry = s.stack[size_t(--s.stack_size)];
-  ++s.nodes_visited;
-  const NodeKind kind = kind_of(entry.node);
-  if (kind == NodeKind::Internal) [[likely]]
-    visit_internal<Format>(s, bytes);
-  else
-    visit_leaf(s, bytes, entry, kind);
-  if (s.status != RayStatus::Traversing) return;
-  settle(s);
-  if (s.table && s.status == RayStatus::Traversing && s.table->is_full()) [[unlikely]] {
-    s.status = RayStatus::Gathered;
-    ++s.table->overflows;
-  }
-}
-template <class Format>
-void run_as(RayState& s, const mem::AddressSpace& memory) {
-  while (s.status == RayStatus::Traversing) {
-    const Fetch fetch = next_fetch(s);
-    const std::byte* bytes = memory.find(fetch.address, fetch.bytes);
-    if (!bytes) [[unlikely]]
-      return break_off(s);
-    step_as<Format>(s, bytes);
-  }
-}
-
-struct FormatCode {
-  void (*step)(RayState&, const std::byte*);
-  void (*run)(RayState&, const mem::AddressSpace&);
-  uint32_t node_bytes;
-};
-template <class Format>
-constexpr FormatCode code_for() {
-  static_assert(Format::kNodeBytes < 256 &&
-                Format::kNodeBytes % kBlockBytes == 0);  // RayState keeps it in a byte.
-  return {step_as<Format>, run_as<Format>, Format::kNodeBytes};
-}
-// Lists the code of each format, in the order of FormatId.
-constexpr FormatCode kFormats[] = {code_for<Bvh6>(), code_for<Bvh2>(), code_for<Bvh4>(), code_for<Bvh8>()};
-static_assert(std::size(kFormats) == size_t(FormatId::Count));
+namespace {
 
 bool is_finite(const std::array<float, 3>& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -329,14 +206,14 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
   const auto* bytes = memory.find(s.ray.structure, sizeof(StructureHeader));
   if (!bytes) return false;
   const auto header = load<StructureHeader>(bytes);
-  if (header.magic != StructureHeader::kMagic || header.level != 1 ||
-      header.format >= uint8_t(FormatId::Count))
-    return false;
+  if (header.magic != StructureHeader::kMagic || header.level != 1) return false;
+  const NodeFormat* format = find_format(header.format);
+  if (!format) return false;
   const bool sane = is_finite(s.ray.origin) && is_finite(s.ray.direction) && std::isfinite(s.ray.t_min) &&
                     s.ray.t_min <= s.ray.t_max;
   if (!sane) return true;
-  s.format = header.format;
-  s.node_bytes = uint8_t(kFormats[header.format].node_bytes);
+  s.walk = &format->walk();
+  s.node_bytes = uint8_t(s.walk->node_bytes);
   s.base = s.ray.structure;
   enter_space(s.space, s.ray.origin, s.ray.direction);
   s.status = RayStatus::Traversing;
@@ -345,7 +222,7 @@ bool begin(RayState& s, const mem::AddressSpace& memory) {
 }
 
 void step(RayState& s, const std::byte* bytes) {
-  kFormats[s.format].step(s, bytes);
+  s.walk->step(s, bytes);
 }
 
 bool start_at(RayState& s, const mem::AddressSpace& memory, const Start& start) {
@@ -358,7 +235,7 @@ bool start_at(RayState& s, const mem::AddressSpace& memory, const Start& start) 
   const auto header = load<StructureHeader>(below);
   const Address offset = start.node - leaf.structure;  // more than any structure has for a node before it
   const bool fits = header.magic == StructureHeader::kMagic && header.level == 0 &&
-                    header.format == s.format && header.stack_need < kStackEntries &&
+                    header.format == s.walk->format && header.stack_need < kStackEntries &&
                     offset % kBlockBytes == 0 && offset < std::min(header.bytes, kMostBytes);
   if (!fits) return false;
   ++s.instances_visited;
@@ -373,7 +250,7 @@ void break_off(RayState& s) {
 }
 
 void run(RayState& s, const mem::AddressSpace& memory) {
-  kFormats[s.format].run(s, memory);
+  s.walk->run(s, memory);
 }
 
 }  // namespace glint::rt

@@ -113,13 +113,21 @@ class Plugin(GlintTest):
         base = ["run", "SHIP_SH", "--size", "16x16", "--spp", "1"]
         self.assertEqual(self.installed(*base, "--out", "base").returncode, 0)
         for key, name, statistic in (("rt.prefetch", "next_line", r"rt\.next_line\.nodes,[1-9]"), ("rt.entry", "last_hit", r"rt\.entry\.verified,[1-9]"),
-                                     ("rt.scheduler", "same_region", r"rt\.same_region\.followed,[1-9]")):
+                                     ("rt.scheduler", "same_region", r"rt\.same_region\.followed,[1-9]"), ("bvh.format", "box32", r"rt\.internal_nodes,[1-9]")):
             with self.subTest(policy=name):
                 self.assertLess(len((folder / f"{name}.cpp").read_text().splitlines()), 150)
                 done = self.installed(*base, "--set", f"{key}={name}", "--plugin", build / f"{name}.so", "--out", name)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertRegex((self.folder / name / "stats.csv").read_text(), statistic)
                 self.assertEqual(*((self.folder / out / "image.pfm").read_bytes() for out in (name, "base")))
+
+        # The format has the boxes of bvh4 at other places of the node, so the machine does the same in each cycle.
+        self.assertEqual(self.installed(*base, "--set", "bvh.format=bvh4", "--out", "bvh4").returncode, 0)
+        self.assertEqual(*((self.folder / out / "stats.csv").read_bytes() for out in ("box32", "bvh4")))
+        self.assertNotEqual(*((self.folder / out / "stats.csv").read_bytes() for out in ("base", "bvh4")))
+        unknown = self.installed(*base, "--set", "bvh.format=box32", "--out", "none")
+        self.assertEqual(unknown.returncode, 2, unknown.stderr)
+        self.assertIn("box32", unknown.stderr)
 
     def test_a_program_can_embed_the_libraries(self):
         folder = self.folder / "embed"

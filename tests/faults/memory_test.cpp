@@ -172,6 +172,19 @@ TEST_CASE("a ray query in what is not a structure names what lies there, and fin
        [](uint32_t) { return 10; }});
 }
 
+TEST_CASE("a ray query in a structure of an unknown node format says so, and finds nothing when let pass") {
+  check_memory(
+      {"data[0] = 0x53424c47u; data[1] = 1u; data[14] = 0x12345678u; memoryBarrierBuffer(); "
+       "barrier(); rayQueryEXT q; rayQueryInitializeEXT(q, accelerationStructureEXT(data_address), 0, 0xff, "
+       "vec3(0), 0.0, vec3(1), 9.0); "
+       "got = rayQueryProceedEXT(q) ? 1u : 10u + rayQueryGetIntersectionTypeEXT(q, true);",
+       "its header names the node format 0x12345678, which no policy of bvh.format has",
+       FaultKind::Structure,
+       64,
+       {0, 0, 0},
+       [](uint32_t) { return 10; }});
+}
+
 TEST_CASE("a program without end stops also when faults are let pass, after those that were") {
   for (const bool timing : {false, true}) {
     const std::string message = fault_of("got = data[i]; while (data[0] != 0u) data[1] += 1u;",

@@ -91,7 +91,7 @@ void for_each_leaf(const mem::AddressSpace& memory, const NodeFormat& format, Ad
 class BruteForce {
  public:
   BruteForce(const Scene& scene, const BuiltScene& built) : scene_(scene) {
-    for_each_leaf(built.memory, *make_format(built.top.format), built.top.address, kRootBlock,
+    for_each_leaf(built.memory, *find_format(built.top.format), built.top.address, kRootBlock,
                   [&](NodeKind, const std::byte* bytes) {
                     InstanceLeaf leaf;
                     std::memcpy(&leaf, bytes, sizeof leaf);
