@@ -55,6 +55,11 @@ void check(const GpuParams& params, Diagnostics& diagnostics) {
                       fmt::format("{} goes by treelets, and bvh.layout = \"{}\" forms none; choose one that "
                                   "does, such as \"treelet_breadth_first\"",
                                   who, params.bvh.layout.name));
+  if (params.rt.child_order.make({})->needs_octant_slots() && !params.bvh.format.make({})->has_octant_slots())
+    diagnostics.error({},
+                      fmt::format("rt.child_order = \"{}\" goes by the octants that children lie in, and "
+                                  "bvh.format = \"{}\" does not place them so; choose bvh.format = \"cwbvh\"",
+                                  params.rt.child_order.name, params.bvh.format.name));
 }
 
 }  // namespace glint::pipeline

@@ -25,11 +25,10 @@ struct alignas(64) RayState {
   int16_t stack_peak = 0;
   // The RT unit does not hold this number of entries at the bottom. The stack model sets it.
   int16_t stack_off_chip = 0;
+  int16_t stack_in_memory = 0;  // This number of those entries lie in memory. The stack model sets it.
   RayStatus status = RayStatus::Idle;
   uint8_t node_bytes = 0;  // size of its internal nodes
-  bool broken = false;     // The structure's bytes led outside memory, and the ray ended without a meaning.
-  int16_t stack_in_memory = 0;  // This number of those entries lie in memory. The stack model sets it.
-  Address base = 0;             // virtual address of the header of the structure being walked
+  Address base = 0;        // virtual address of the header of the structure being walked
   // The ray gathers its candidates here. With null it stops at each. The owner sets it before begin().
   CandidateTable* table = nullptr;
   // The RT unit sets this when its stack model needs a path; begin() sets null.
@@ -48,7 +47,8 @@ struct alignas(64) RayState {
   bool candidate_opaque = false;  // While NeedsIntersection: a report is confirmed without an any-hit shader.
   bool attribute_slot = false;    // which of the two attribute buffers holds the committed attributes
   bool report_accepted = false;   // result of the last rt.report
-  bool terminated = false;    // After rt.terminate or terminate-on-first-hit the ray ends after this shader.
+  bool broken = false;      // The structure's bytes led outside memory, and the ray ended without a meaning.
+  bool terminated = false;  // After rt.terminate or terminate-on-first-hit the ray ends after this shader.
   uint8_t candidate_row = 0;  // row of the table that the candidate came from
 
   Address instance_leaf = 0;  // 0 in the top level

@@ -36,6 +36,11 @@ class Table(GlintTest):
                 pictures.setdefault(picture, f"{key}={name}")
         self.assertEqual(len(pictures), 1, f"these give pictures of their own: {list(pictures.values())}")
 
+    def test_the_order_by_octant_asks_for_a_node_format_with_slots_by_octant(self):
+        done = self.glint("run", "SHIP_SH", "--size", "8x8", "--set", "rt.child_order=octant", "--out", "out")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn('bvh.format = "bvh6" does not place them so; choose bvh.format = "cwbvh"', done.stderr)
+
 
 class Frames(GlintTest):
     def test_occlusion_rays_end_at_their_first_hit_in_every_preset_and_visit_fewer_nodes(self):

@@ -18,9 +18,11 @@ using Order = std::vector<uint8_t>;
 struct Hits {
   std::vector<float> t;
   std::vector<NodeRef> child;
+  std::vector<uint8_t> slot;
+  uint32_t octant = 0;
   Order sorted(const ChildOrder& order) const {
     Order out(t.size(), 0xee);
-    order.sort({int(t.size()), t.data(), child.data()}, out.data());
+    order.sort({int(t.size()), t.data(), child.data(), slot.data(), octant}, out.data());
     return out;
   }
 };
@@ -28,6 +30,7 @@ Hits hits(std::initializer_list<std::pair<float, NodeKind>> children) {
   Hits out;
   for (const auto& [t, kind] : children) {
     out.t.push_back(t);
+    out.slot.push_back(uint8_t(out.child.size()));
     out.child.push_back(node_ref(uint32_t(out.child.size() + 9), kind));
   }
   return out;
@@ -41,7 +44,7 @@ constexpr NodeKind kNode = NodeKind::Internal, kLeaf = NodeKind::Triangle;
 
 TEST_CASE("every child order names each child once, and says the same when asked again") {
   const auto names = Registry<ChildOrder>::names();
-  REQUIRE(names.size() >= 3);
+  REQUIRE(names.size() >= 4);
   for (const std::string& name : names) {
     CAPTURE(name);
     const auto order = Registry<ChildOrder>::instance().entry(name).make_default({});
@@ -50,8 +53,10 @@ TEST_CASE("every child order names each child once, and says the same when asked
       Hits some;
       for (uint32_t n = random.below(9); n; --n) {
         some.t.push_back(float(random.below(4)));
+        some.slot.push_back(uint8_t(some.child.size()));
         some.child.push_back(node_ref(random.below(1000), random.below(2) ? kNode : kLeaf));
       }
+      some.octant = random.below(8);
       const Order first = some.sorted(*order);
       REQUIRE(first == some.sorted(*order));
       Order seen = first;
@@ -69,6 +74,16 @@ TEST_CASE("near_first is by distance, of equals the lower; and it is what the tr
 
 TEST_CASE("index_order is that of the node") {
   CHECK(order_of("index_order", hits({{3, kNode}, {1, kLeaf}, {2, kNode}})) == Order{0, 1, 2});
+}
+
+TEST_CASE("octant goes by slots and by the signs of the direction, whatever the distances") {
+  Hits some = hits({{3, kNode}, {1, kLeaf}, {2, kNode}, {0, kNode}});
+  some.slot = {0, 1, 3, 6};
+  CHECK(order_of("octant", some) == Order{0, 1, 2, 3});
+  some.octant = 7;
+  CHECK(order_of("octant", some) == Order{3, 2, 1, 0});
+  some.octant = 1;  // It goes down the x axis: the upper of two slots that differ in x comes first.
+  CHECK(order_of("octant", some) == Order{1, 0, 2, 3});
 }
 
 TEST_CASE("first_internal goes down the first internal child, then from the last child to the first") {

@@ -96,7 +96,8 @@ TEST_CASE("a bottom level of another node format is refused") {
 // Width and bytes are as published, and the number of nodes lies between a full tree's and a binary one's.
 TEST_CASE("nodes have the published sizes, and a structure is its header, nodes and leaves") {
   const std::map<std::string, std::pair<uint32_t, uint32_t>> known{
-      {"bvh2", {2, 64}}, {"bvh4", {4, 128}}, {"bvh6", {6, 64}}, {"bvh8", {8, 80}}};
+      {"bvh2", {2, 64}}, {"bvh4", {4, 128}},       {"bvh6", {6, 64}},
+      {"bvh8", {8, 80}}, {"bvh8_12bit", {8, 128}}, {"cwbvh", {8, 80}}};
   Random random{1};
   const Positions positions = soup(random, 1000, 10, 1);
   uint32_t last_depth = 1000, last_width = 0;
