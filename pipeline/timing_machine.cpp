@@ -26,6 +26,7 @@ LaunchEnd early_end(const LaunchWatch& watch, Cycle now) {
 
 // Returns the bytes of shared memory that each warp of the launch needs for the stacks of its rays.
 uint32_t stack_bytes_per_warp(const GpuParams& params, const exec::World& world) {
+  if (params.rt.unit == rt::kSoftware) return 0;
   const auto& code = world.image->code;
   const bool traces = std::any_of(code.begin(), code.end(), [](const exec::Step& step) {
     return isa::effect_row(step.effect).finish == isa::Finish::Rays;

@@ -78,6 +78,9 @@ TEST_CASE("stacks in shared memory take its room from the warps of a launch that
   CHECK(name_of(shared.residency.limit) == "shared memory");
   CHECK(shared.rgba == plain.rgba);
   job.gpu.core.shared_bytes = 2047;
+  job.gpu.rt.unit = "software";  // Its code keeps stacks in local memory.
+  CHECK(pipeline::render(job).rgba == plain.rgba);
+  job.gpu.rt.unit = "hardware";
   CHECK_THROWS_WITH(pipeline::render(job), Catch::Contains("a block needs 2048 bytes of shared memory"));
 }
 
