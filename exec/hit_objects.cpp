@@ -122,7 +122,10 @@ bool HitObjects::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
       case HitObjectOp::SetTime:
       case HitObjectOp::GetTime:
       case HitObjectOp::Corner:
-        break;  // These were handled above.
+      case HitObjectOp::Reorder:
+      case HitObjectOp::ReorderByHint:
+      case HitObjectOp::ReorderByTrace:
+        break;  // The first three were handled above, and the others are not given to this unit.
       case HitObjectOp::Attributes:
         store_attributes(warp, read_word(warp.regs, inst, 1, lane), lane, object);
         break;

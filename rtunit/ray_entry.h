@@ -21,7 +21,7 @@ namespace glint::rt {
 //
 // Contract (tests/contract/rt_ray_entry_test.cpp):
 //  - No call changes a ray. A policy sees each of its rays in this order: wants(), look_up(), learn() for
-//    each hit that was not predicted, ended().
+//    each hit that was not predicted, ended(). With a ray pool (rt.pool) it may lie elsewhere at each call.
 //  - What it answers depends on the calls alone, and not on how many cycles lie between two of them.
 //  - A node that start_at() refuses is a wrong choice. Nodes that start_above() has given exist.
 class RayEntry {

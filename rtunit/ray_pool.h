@@ -16,8 +16,9 @@ namespace glint::rt {
 
 // Describes a ray that waits in the pool.
 struct WaitingRay {
-  uint32_t id = 0;      // Rays of the same warp of the core have the same id / kLanes.
-  bool is_new = false;  // It has been in no warp of the unit since the core gave it.
+  uint32_t id = 0;            // Rays of the same warp of the core have the same id / kLanes.
+  bool is_new = false;        // It has been in no warp of the unit since the core gave it.
+  bool is_predicted = false;  // takes_predicted() took it back before its first visit.
   const RayState* ray = nullptr;
 };
 
@@ -33,8 +34,9 @@ struct FormedWarp {
 //  - A ray that add() was given is in the pool until form() names it. form() names each at most once.
 //  - form() is asked when the warp buffer has room and rays wait. It names no ray only when another ray will
 //    come, or at the cycle of next_event() a warp will be formed without one. While the unit holds no warp it
-//    names at least one.
-//  - goes_back() is asked after each visit of a ray that goes on. A ray goes back only when a later form()
+//    names at least one, or next_event() has a cycle.
+//  - goes_back() is asked after each visit of a ray that goes on, and takes_predicted() once for a ray whose
+//    look-up has given a node (rt.entry), before its first visit. A ray goes back only when a later form()
 //    names it without a visit of another ray, if the unit holds nothing else.
 //  - The choice depends on the arguments and the policy's own state only.
 //  - A pool changes cycles, never hits.
@@ -59,6 +61,9 @@ class RayPool {
   virtual void formed(uint32_t /*slot*/) {}
   // Returns whether the ray in `lane` goes back to the pool.
   virtual bool goes_back(const FormedWarp&, int /*lane*/) { return false; }
+  // Returns whether the ray in `lane`, which has been in no other warp, goes back to be with others that know
+  // where to begin.
+  virtual bool takes_predicted(const FormedWarp&, int /*lane*/) { return false; }
   // Returns the cycle at which form() will name rays though nothing has changed, or kNever.
   virtual Cycle next_event(Cycle /*now*/) const { return kNever; }
 };

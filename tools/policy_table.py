@@ -14,7 +14,8 @@ FRAME = ["WKND_PT", "--config", "mobile", "--size", "24x16", "--spp", "1", "--se
 # Lists keys that stand for several, and what else a key or one of its policies needs to have an effect.
 KEYS = {"*.replacement": "memory.l1.replacement"}
 TREELETS = ["bvh.layout=treelet_breadth_first"]
-NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"], "rt.child_order=octant": ["bvh.format=cwbvh"], "rt.order=two_stacks": TREELETS, "rt.pool=treelet_queues": TREELETS,
+NEEDS = {"memory.dram.scheduler": ["memory.dram.model=banked"], "rt.child_order=octant": ["bvh.format=cwbvh"], "rt.order=two_stacks": TREELETS,
+         "rt.pool=predicted": ["rt.entry=predictor"], "rt.pool=treelet_queues": TREELETS,
          "rt.prefetch=treelet": TREELETS, "rt.scheduler=omr": [*TREELETS, "rt.prefetch=treelet"], "rt.scheduler=pmr": [*TREELETS, "rt.prefetch=treelet"]}
 
 

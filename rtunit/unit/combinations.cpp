@@ -26,17 +26,11 @@ std::string why_no_pool(const Params& params) {
     return fmt::format("rt.pool = \"{}\" does not go with {} = \"{}\": {}", params.pool.name, key, value,
                        reason);
   };
-  if (params.stack.make({})->keeps_path())
-    return why("rt.stack", params.stack.name,
-               "that stack follows the path of a ray in its lane, and rays of a pool change their lanes");
   if (params.mapping.name != WorkMapping::kOwnRay)
     return why("rt.mapping", params.mapping.name,
                "lanes that work for one ray would have to move together when it changes its warp");
   if (params.oracle.any_lane)
     return why("rt.oracle.any_lane", "true", "with that oracle, no lane is without a ray already");
-  if (params.entry.name != RayEntry::kRoot)
-    return why("rt.entry", params.entry.name,
-               "a look-up follows its ray in one lane, and rays of a pool change their lanes");
   if (params.any_hit.make({})->table_rows() != 0 && !params.shortcuts.store_each_hit)
     return why("rt.any_hit", params.any_hit.name,
                "lanes of a warp share the lines of their candidate tables, and a pool takes the lanes apart");

@@ -23,17 +23,24 @@ EntryLookUp::EntryLookUp(std::unique_ptr<RayEntry> policy, const mem::AddressSpa
       buffer_(buffer),
       pipelines_(pipelines),
       stats_(&stats),
-      pipe_(pipe_for(policy_->timing(), pipelines)),
-      lanes_(buffer.size()) {
+      pipe_(pipe_for(policy_->timing(), pipelines)) {
 }
 
 // A ray that comes back from a shader was not looked up, because it needs shaders.
 void EntryLookUp::entered(uint32_t slot, int lane, Cycle) {
   if (buffer_[slot].is_helping(lane)) return;
+  if (const size_t needed = buffer_[slot].place_of(lane).warp_slot + 1; lanes_.size() < needed)
+    lanes_.resize(needed);
   Lane& at = lane_of(slot, lane) = {};
   const RayState& ray = buffer_[slot].ray_of(lane);
   if (ray.nodes_visited == 0 && needs_no_shader(ray, memory_) && policy_->wants(ray.ray))
     at.phase = Phase::New;
+}
+
+bool EntryLookUp::has_prediction(uint32_t slot, int lane) const {
+  const auto [warp_slot, own_lane] = buffer_[slot].place_of(lane);
+  const Lane& at = lanes_[warp_slot][size_t(own_lane)];
+  return at.phase == Phase::LookingUp && at.start;
 }
 
 bool EntryLookUp::detour(uint32_t slot, int lane, Cycle) {

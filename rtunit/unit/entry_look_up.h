@@ -52,6 +52,9 @@ class EntryLookUp final : public WalkHook {
               TestPipelines& pipelines, RtStats& stats);
 
   void entered(uint32_t slot, int lane, Cycle now) override;
+  void moved(uint32_t /*slot*/, int /*lane*/, Cycle /*now*/) override {}  // What is held goes with the ray.
+  // Returns whether the look-up of the lane's ray has given a node that the ray has not begun to walk to.
+  bool has_prediction(uint32_t slot, int lane) const;
   bool detour(uint32_t slot, int lane, Cycle now) override;
   void errand_started(uint32_t slot, int lane) override;
   void visited(const Visit& visit) override;
@@ -73,7 +76,10 @@ class EntryLookUp final : public WalkHook {
     RayEntry::Ending ending;
   };
 
-  Lane& lane_of(uint32_t slot, int lane) { return lanes_[slot][size_t(lane)]; }
+  Lane& lane_of(uint32_t slot, int lane) {
+    const auto [warp_slot, own_lane] = buffer_[slot].place_of(lane);
+    return lanes_[warp_slot][size_t(own_lane)];
+  }
   void miss_subtree(Lane& lane);
 
   const std::unique_ptr<RayEntry> policy_;
@@ -82,7 +88,7 @@ class EntryLookUp final : public WalkHook {
   TestPipelines& pipelines_;
   EntryStats stats_;
   const Pipe pipe_;
-  std::vector<std::array<Lane, kLanes>> lanes_;  // by slot; what they hold of their own rays
+  std::vector<std::array<Lane, kLanes>> lanes_;  // by the core's warp slot; what they hold of their own rays
 };
 
 }  // namespace glint::rt

@@ -7,11 +7,11 @@
 namespace glint::rt {
 
 void PathKeeper::entered(uint32_t slot, int lane, Cycle) {
-  const uint32_t warp_slot = buffer_[slot].warp_slot;
+  const auto [warp_slot, own_lane] = buffer_[slot].place_of(lane);
   RayState& ray = buffer_[slot].ray_of(lane);
   if (paths_.size() <= warp_slot) paths_.resize(warp_slot + 1);
   if (!paths_[warp_slot]) paths_[warp_slot] = std::make_unique<WarpPaths>();
-  RayPath& path = (*paths_[warp_slot])[size_t(lane)];
+  RayPath& path = (*paths_[warp_slot])[size_t(own_lane)];
   if (ray.nodes_visited == 0) {
     GLINT_DCHECK(ray.stack_size == 1, "a new ray has {} nodes to visit", ray.stack_size);
     path.ray = &ray;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "rtunit/unit/walk_hook.h"
@@ -18,6 +19,7 @@ class PathKeeper final : public WalkHook {
   explicit PathKeeper(WarpBuffer& buffer) : buffer_(buffer) {}
 
   void entered(uint32_t slot, int lane, Cycle now) override;
+  void moved(uint32_t /*slot*/, int /*lane*/, Cycle /*now*/) override {}  // move_ray() has told the path.
 
  private:
   using WarpPaths = std::array<RayPath, kLanes>;
@@ -25,5 +27,11 @@ class PathKeeper final : public WalkHook {
   WarpBuffer& buffer_;
   std::vector<std::unique_ptr<WarpPaths>> paths_;  // by the core's warp slot
 };
+
+// Moves a ray with its path, in exchange for what was there.
+inline void move_ray(RayState& from, RayState& to) {
+  if (from.path && from.path->ray == &from) from.path->ray = &to;
+  std::swap(from, to);
+}
 
 }  // namespace glint::rt

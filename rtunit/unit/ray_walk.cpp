@@ -45,6 +45,11 @@ void RayWalk::start_part(uint32_t slot, int lane, Cycle now) {
   go_on(slot, lane, now);
 }
 
+void RayWalk::start_elsewhere(uint32_t slot, int lane, Cycle now) {
+  for (WalkHook* hook : hooks_) hook->moved(slot, lane, now);
+  go_on(slot, lane, now);
+}
+
 void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
   for (WalkHook* hook : hooks_)
     if (hook->detour(slot, lane, now)) return;

@@ -40,6 +40,8 @@ class RayWalk {
   void end_test(uint32_t slot, int lane, Cycle now);
   // Lets a lane begin to work on a part of another lane's ray, which WorkSharing has given it.
   void start_part(uint32_t slot, int lane, Cycle now);
+  // Continues with a ray that a ray pool has put into this lane.
+  void start_elsewhere(uint32_t slot, int lane, Cycle now);
   // Ends the walk of the lane's own ray.
   void stop(uint32_t slot, int lane, Cycle now);
 

@@ -81,7 +81,10 @@ void RtUnit::add_optional_parts(const Params& params, const Context& context) {
   std::unique_ptr<RayEntry> entry;
   if (params.entry.name != RayEntry::kRoot) entry = params.entry.make({&stats_, context.memory});
   if (stack->keeps_path() || (entry && entry->wants_path())) add<PathKeeper>(buffer_);
-  if (entry) add<EntryLookUp>(std::move(entry), context.memory, buffer_, pipelines_, stats_);
+  if (entry) {
+    const auto& look_up = add<EntryLookUp>(std::move(entry), context.memory, buffer_, pipelines_, stats_);
+    if (former_) former_->set_look_up(look_up);
+  }
   if (StackMover::is_needed(*stack)) add_stack_mover(std::move(stack), context);
   if (shortcuts.fetch_headers || shortcuts.fetch_descriptors)
     add<SplitReads>(shortcuts, context.memory, buffer_, pipelines_, stats_);

@@ -13,6 +13,9 @@ class WalkHook {
   virtual ~WalkHook() = default;
   // Tells that a ray enters the unit, for the first time (no node visited yet) or after a shader.
   virtual void entered(uint32_t /*slot*/, int /*lane*/, Cycle /*now*/) {}
+  // Tells that a ray that was in the unit has come into this lane (rt.pool). What a hook knows by lane, it
+  // learns as for a ray that enters.
+  virtual void moved(uint32_t slot, int lane, Cycle now) { entered(slot, lane, now); }
   // Tells that the lane is about to want its ray's next node, or to stop. Returns true when something else
   // comes first: the hook has made the lane want a read of its own, or calls RayWalk::go_on() when it is
   // done.

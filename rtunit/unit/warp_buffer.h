@@ -61,8 +61,10 @@ struct BufferSlot {
   RayState& ray_of(int lane) const { return is_helping(lane) ? parts[lane] : states[lane]; }
   // Returns the lane whose ray a lane works for.
   int owner_of(int lane) const { return is_helping(lane) ? owner[size_t(lane)] : lane; }
+  // Returns the thread whose own ray has the lane.
+  Thread place_of(int lane) const { return threads ? threads[lane] : Thread{warp_slot, lane}; }
   // Returns the thread whose ray a lane works for.
-  Thread thread_of(int lane) const { return threads ? threads[lane] : Thread{warp_slot, owner_of(lane)}; }
+  Thread thread_of(int lane) const { return place_of(owner_of(lane)); }
   LaneMask owners_of(LaneMask lanes) const {
     LaneMask out = lanes & ~helping;
     for_each_lane(lanes & helping, [&](int lane) { out |= LaneMask{1} << owner[size_t(lane)]; });

@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/num_lanes.h"
+#include "rtunit/unit/path_keeper.h"
 
 namespace glint::rt {
 
@@ -48,7 +49,8 @@ void WarpFormer::add_to_pool(uint32_t id, Cycle now) {
   from.since[id % kLanes] = now;
   ++num_waiting_;
   has_changed_ = true;
-  policy_->add({id, !(from.returned >> id % kLanes & 1), &home_of(id)}, now);
+  const bool is_new = !(from.returned >> id % kLanes & 1);
+  policy_->add({id, is_new, !is_new && home_of(id).nodes_visited == 0, &home_of(id)}, now);
 }
 
 void WarpFormer::form(Cycle now) {
@@ -78,7 +80,7 @@ bool WarpFormer::form_warp(Cycle now) {
     Accepted& from = of(ids[lane]);
     warp.id[lane] = ids[lane];
     warp.threads[lane] = {from.warp_slot, int(ids[lane] % kLanes)};
-    std::swap(warp.states[lane], home_of(ids[lane]));
+    move_ray(home_of(ids[lane]), warp.states[lane]);
   }
   policy_->formed(slot);
   num_waiting_ -= count;
@@ -96,12 +98,13 @@ void WarpFormer::enter(uint32_t slot, int lane, Cycle now) {
   stats_.waited += waited;
   if (!(from.returned >> id % kLanes & 1)) return walk_.start(slot, lane, now, waited);
   warp.states[size_t(lane)].unit_cycles += waited;
-  warp.to_load |= LaneMask{1} << lane;
-  walk_.start_part(slot, lane, now);
+  if (warp.states[size_t(lane)].nodes_visited) warp.to_load |= LaneMask{1} << lane;
+  walk_.start_elsewhere(slot, lane, now);
 }
 
-bool WarpFormer::detour(uint32_t slot, int lane, Cycle) {
+bool WarpFormer::detour(uint32_t slot, int lane, Cycle now) {
   Formed& warp = formed_[slot];
+  if (look_up_ && takes_predicted(slot, lane, now)) return true;
   if (!(warp.to_load >> lane & 1)) return false;
   warp.to_load &= ~(LaneMask{1} << lane);
   moves_.push({warp.id[size_t(lane)], slot, uint8_t(lane), sectors_of(warp.states[size_t(lane)]), true});
@@ -110,26 +113,42 @@ bool WarpFormer::detour(uint32_t slot, int lane, Cycle) {
 
 bool WarpFormer::takes_back(uint32_t slot, int lane, Cycle now) {
   Formed& warp = formed_[slot];
-  const BufferSlot& at = buffer_[slot];
-  RayState& ray = warp.states[size_t(lane)];
   if (!(warp.visited >> lane & 1)) return false;
   warp.visited &= ~(LaneMask{1} << lane);
-  if (ray.status != RayStatus::Traversing) return false;
-  if (!policy_->goes_back({slot, at.mask & ~at.stopped, num_waiting_, warp.states}, lane)) return false;
-  const uint32_t id = warp.id[size_t(lane)];
-  ray.unit_cycles += now - at.arrived;
-  moves_.push({id, slot, uint8_t(lane), sectors_of(ray), false});
+  if (warp.states[size_t(lane)].status != RayStatus::Traversing) return false;
+  if (!policy_->goes_back(view_of(slot), lane)) return false;
+  take_back(slot, lane, now);
+  return true;
+}
+
+bool WarpFormer::takes_predicted(uint32_t slot, int lane, Cycle now) {
+  const uint32_t id = formed_[slot].id[size_t(lane)];
+  if (of(id).returned >> id % kLanes & 1 || !look_up_->has_prediction(slot, lane)) return false;
+  if (!policy_->takes_predicted(view_of(slot), lane)) return false;
+  take_back(slot, lane, now);
+  return true;
+}
+
+void WarpFormer::take_back(uint32_t slot, int lane, Cycle now) {
+  RayState& ray = formed_[slot].states[size_t(lane)];
+  const uint32_t id = formed_[slot].id[size_t(lane)];
+  ray.unit_cycles += now - buffer_[slot].arrived;
+  if (ray.nodes_visited) moves_.push({id, slot, uint8_t(lane), sectors_of(ray), false});
   of(id).returned |= LaneMask{1} << id % kLanes;
   ++stats_.returned;
-  std::swap(ray, home_of(id));
+  move_ray(ray, home_of(id));
   add_to_pool(id, now);
   buffer_.withdraw(slot, lane, now);
-  return true;
+}
+
+FormedWarp WarpFormer::view_of(uint32_t slot) const {
+  const BufferSlot& at = buffer_[slot];
+  return {slot, at.mask & ~at.stopped, num_waiting_, formed_[slot].states};
 }
 
 void WarpFormer::note_stop(uint32_t slot, int lane) {
   const uint32_t id = formed_[slot].id[size_t(lane)];
-  std::swap(formed_[slot].states[size_t(lane)], home_of(id));
+  move_ray(formed_[slot].states[size_t(lane)], home_of(id));
   if (--of(id).running == 0) complete_.push({now_ + 1 + acknowledgement_, id / kLanes});
 }
 

@@ -11,6 +11,7 @@
 #include "memsys/l1_port.h"
 #include "memsys/ring.h"
 #include "rtunit/params.h"
+#include "rtunit/unit/entry_look_up.h"
 #include "rtunit/unit/fetch_queue.h"
 #include "rtunit/unit/ray_walk.h"
 #include "rtunit/unit/request_source.h"
@@ -39,10 +40,11 @@ struct PoolStats {
 
 // The unit accepts rt.pool_warps warps of the core, and works on rt.warps warps that it forms itself. A ray
 // that waits is in the core's storage; one that is in a formed warp is in storage of the unit.
-// Model: a new ray costs nothing to place. A ray that goes back writes 32 B, and reads them when it comes
-// into a warp again; with rt.pool_stacks the entries on its stack move, too, 32 B for four, as far as they
-// fit into the same line. Model: a warp of the core is complete when its last ray has stopped and, with
-// rt.shortcuts.store_each_hit, the acknowledgement of a store sent then has come.
+// Model: a ray without a visit, be it new or looked up, costs nothing to place. A ray that goes back writes
+// 32 B, and reads them when it comes into a warp again; with rt.pool_stacks the entries on its stack move,
+// too, 32 B for four, as far as they fit into the same line. Model: a warp of the core is complete when its
+// last ray has stopped and, with rt.shortcuts.store_each_hit, the acknowledgement of a store sent then has
+// come.
 class WarpFormer final : public RequestSource, public WalkHook {
  public:
   // `states` is the physical, line-aligned address of bytes() for the states of the rays that went back.
@@ -60,6 +62,9 @@ class WarpFormer final : public RequestSource, public WalkHook {
   // Returns the hook that takes rays back. It is the last to be asked, when no other part has anything to do
   // for the ray.
   WalkHook& taker() { return taker_; }
+
+  // Lets the pool take rays back whose look-up has given a node.
+  void set_look_up(const EntryLookUp& look_up) { look_up_ = &look_up; }
 
   // A ray that had gone back reads its state before anything else.
   bool detour(uint32_t slot, int lane, Cycle now) override;
@@ -117,6 +122,9 @@ class WarpFormer final : public RequestSource, public WalkHook {
   bool form_warp(Cycle now);
   void enter(uint32_t slot, int lane, Cycle now);
   bool takes_back(uint32_t slot, int lane, Cycle now);
+  bool takes_predicted(uint32_t slot, int lane, Cycle now);
+  void take_back(uint32_t slot, int lane, Cycle now);
+  FormedWarp view_of(uint32_t slot) const;
   void note_stop(uint32_t slot, int lane);
   Accepted& of(uint32_t id) { return accepted_[id / kLanes]; }
   RayState& home_of(uint32_t id) { return of(id).states[id % kLanes]; }
@@ -133,6 +141,7 @@ class WarpFormer final : public RequestSource, public WalkHook {
   RtStats& unit_stats_;
   PoolStats stats_;
   Probe<WarpMoved> warp_moved_;
+  const EntryLookUp* look_up_ = nullptr;
   Taker taker_{*this};
   std::vector<Accepted> accepted_;
   std::vector<Formed> formed_;  // by slot of the warp buffer

@@ -34,16 +34,16 @@ class Gambler final : public RayEntry {
   }
   std::optional<Start> look_up(const RayState& ray) override {
     REQUIRE(ray.nodes_visited == 0);
-    REQUIRE(open_.insert({&ray, false}).second);
+    REQUIRE(open_.insert({ray.path, false}).second);
     if (known_.empty()) return std::nullopt;
-    open_[&ray] = true;
+    open_[ray.path] = true;
     Start out = known_[random_.below(uint32_t(known_.size()))];
     if (random_.below(8) == 0) out.instance_leaf = random_.bits();  // There is none.
     if (random_.below(8) == 0) out.node -= 1 << 20;
     return out;
   }
   std::optional<Start> learn(const RayState& ray, const Hit& hit) override {
-    REQUIRE(open_.contains(&ray));
+    REQUIRE(open_.contains(ray.path));
     REQUIRE(hit.valid());
     const auto start = start_above(ray, hit, random_.below(6));
     REQUIRE((start.has_value() && start->instance_leaf == hit.instance_leaf));
@@ -51,17 +51,18 @@ class Gambler final : public RayEntry {
     return start;
   }
   void ended(const RayState& ray, const Ending& ending) override {
-    REQUIRE(open_.contains(&ray));
-    REQUIRE(open_[&ray] == ending.was_predicted);
+    REQUIRE(open_.contains(ray.path));
+    REQUIRE(open_[ray.path] == ending.was_predicted);
     REQUIRE((ending.was_predicted || !ending.was_verified));
     if (ending.was_verified) REQUIRE(ray.committed.valid());
-    open_.erase(&ray);
+    open_.erase(ray.path);
   }
 
  private:
   Random random_{77};
   std::vector<Start> known_;
-  std::map<const RayState*, bool> open_;  // rays that were looked up and have not ended
+  // Has the rays that were looked up and have not ended, by their paths, which go with them (rt.pool).
+  std::map<const RayPath*, bool> open_;
 };
 const Register<RayEntry, Gambler> registered;
 

@@ -19,6 +19,7 @@ namespace glint::rt::test {
 namespace {
 
 constexpr uint32_t kWarps = 12;
+constexpr uint32_t kNoShader = ray_flag::kOpaque | ray_flag::kSkipAabbs;
 const BuildOptions kTreelets{"bvh6", true, "treelet_breadth_first"};
 
 TEST_CASE("a pool names each waiting ray once, and repeats itself exactly") {
@@ -49,7 +50,7 @@ TEST_CASE("a pool names each waiting ray once, and repeats itself exactly") {
       for (uint32_t i = 0; i < 20; ++i) {
         const uint32_t id = random.below(context.rays);
         if (waits[id]) continue;
-        const WaitingRay ray{id, !was_in[id], &rays[id]};
+        const WaitingRay ray{id, !was_in[id], was_in[id] && id % 2, &rays[id]};
         a->add(ray, now);
         b->add(ray, now);
         waits[id] = was_in[id] = true;
@@ -86,13 +87,14 @@ struct Outcome {
   uint64_t returned = 0, treelet_warps = 0;
 };
 
-PolicyChoice<RayPool> chosen(const std::string& name, const std::string& params) {
-  PolicyChoice<RayPool> choice(name.c_str());
+template <class Interface = RayPool>
+PolicyChoice<Interface> chosen(const std::string& name, const std::string& params) {
+  PolicyChoice<Interface> choice(name.c_str());
   Config config;
   config.add_text("test", params);
   Diagnostics diagnostics;
   ConfigTable table = config.root(diagnostics);
-  Registry<RayPool>::instance().entry(name).read(table, &choice);
+  Registry<Interface>::instance().entry(name).read(table, &choice);
   REQUIRE_FALSE(diagnostics.has_errors());
   return choice;
 }
@@ -146,17 +148,19 @@ TEST_CASE("rays that change their warps find the hits that they find in one, wit
   const Positions positions = soup(random, 600, 8, 3);
   mem::AddressSpace memory;
   const StructureInfo top = single(memory, triangles(positions), kTreelets);
+  const std::vector<std::string> entries = Registry<RayEntry>::names();
   uint64_t seed = 0, returned = 0, runs = 0;
   for (const std::string& name : Registry<RayPool>::names())
     for (const std::string& stack : Registry<StackModel>::names())
       for (const std::string& prefetch : Registry<Prefetcher>::names())
         for (const std::string& scheduler : Registry<RayScheduler>::names())
-          for (const uint32_t flags : {0u, 4u}) {
+          for (const uint32_t flags : {kNoShader, kNoShader | ray_flag::kTerminateOnFirstHit}) {
             Params params;
             params.pool.name = name;
             params.stack.name = stack;
             params.prefetch.name = prefetch;
             params.scheduler.name = scheduler;
+            params.entry.name = entries[seed % entries.size()];
             params.retest = seed % 4 < 2;
             params.warps = uint32_t(1 + ++seed % 3);
             params.pool_warps = uint32_t(2 + seed % 5);
@@ -200,6 +204,31 @@ TEST_CASE("the rays of a treelet form warps that they leave with it") {
   }
 }
 
+TEST_CASE("rays whose look-up gave a node form warps of their own, and keep what was looked up") {
+  Random random{8};
+  mem::AddressSpace memory;
+  const StructureInfo top = single(memory, triangles(soup(random, 600, 8, 3)), kTreelets);
+  constexpr uint32_t kFirstHit = kNoShader | ray_flag::kTerminateOnFirstHit;
+  Params params;
+  params.warps = 2;
+  params.pool_warps = kWarps;
+  params.entry = chosen<RayEntry>("predictor", "origin_bits = 1\ndirection_bits = 1");
+  const Outcome none = trace(params, memory, top, 3, kFirstHit, true);
+  params.pool.name = "predicted";
+  const Outcome a = trace(params, memory, top, 3, kFirstHit, true),
+                b = trace(params, memory, top, 3, kFirstHit, false);
+  CHECK(a.completion == b.completion);
+  CHECK(glint::test::first_difference(a.stats, b.stats) == "");
+  CHECK(count_of(none.stats, "looked_up") == kWarps * kLanes);
+  CHECK(count_of(a.stats, "looked_up") == kWarps * kLanes);
+  CHECK(count_of(a.stats, "predicted") > 20);
+  CHECK(count_of(a.stats, "verified") > 0);
+  CHECK(a.returned == count_of(a.stats, "predicted"));
+  CHECK(count_of(a.stats, "state_reads") == 0);  // They have no state to move.
+  params.entry.name = RayEntry::kRoot;           // Nobody predicts anything.
+  CHECK(trace(params, memory, top, 3, kFirstHit, true).returned == 0);
+}
+
 TEST_CASE("a pool refuses what follows a ray in its lane") {
   Params params;
   params.pool.name = "repack";
@@ -209,9 +238,7 @@ TEST_CASE("a pool refuses what follows a ray in its lane") {
     (other.*choice).name = name;
     return RtUnit::why_not_together(other).find(name) != std::string::npos;
   };
-  CHECK(refused(&Params::stack, "restart_trail"));
   CHECK(refused(&Params::mapping, "cooperative"));
-  CHECK(refused(&Params::entry, "predictor"));
   CHECK(refused(&Params::any_hit, "deferred"));
   params.shortcuts.store_each_hit = true;
   CHECK_FALSE(refused(&Params::any_hit, "deferred"));
