@@ -30,6 +30,7 @@ inline Address allocate_structure(mem::AddressSpace& memory) {
   const Address at = memory.allocate("structure", 4096);
   rt::StructureHeader header;
   header.level = 1;
+  header.format = rt::format_id("bvh6");
   memory.write(at, &header, sizeof header);
   return at;
 }
