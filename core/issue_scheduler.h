@@ -24,7 +24,7 @@ struct IssueView {
   uint64_t ready = 0;             // bit i: warp i can issue this cycle; at least one bit is set
   std::span<const uint64_t> age;  // launch number of each warp: smaller is older; unique among resident warps
   Cycle now = 0;
-  RtView rt;
+  RtView rt = {};
 };
 
 // Contract (tests/contract/issue_scheduler_test.cpp):
