@@ -2,6 +2,7 @@
 // cycle.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -26,6 +27,16 @@ struct IssueView {
   Cycle now = 0;
   RtView rt = {};
 };
+
+// Returns the oldest of some warps; there must be one.
+inline uint32_t oldest_of(uint64_t warps, const IssueView& view) {
+  uint32_t oldest = uint32_t(std::countr_zero(warps));
+  for (uint64_t rest = warps & (warps - 1); rest; rest &= rest - 1) {
+    const uint32_t i = uint32_t(std::countr_zero(rest));
+    if (view.age[i] < view.age[oldest]) oldest = i;
+  }
+  return oldest;
+}
 
 // Contract (tests/contract/issue_scheduler_test.cpp):
 //  - pick() returns the number of a set bit of `ready`.

@@ -9,13 +9,13 @@ struct ReorderStats : stats::Group {
   explicit ReorderStats(Group* parent) : Group(parent, "reorder") {}
 
   stats::Counter warps{this, "warps", "warp", "Number of times that a warp came to be regrouped."};
-  stats::Counter threads{this, "threads", "lane", "Number of running threads in these warps."};
+  stats::Counter threads{this, "threads", "lane",
+                         "Number of running threads in warps that came to be regrouped."};
   stats::Counter batches{this, "batches", "batch", "Number of times that waiting warps were regrouped."};
   stats::Counter timeouts{this, "timeouts", "batch",
                           "Number of batches that went because their time was over."};
-  stats::Counter threads_moved{
-      this, "threads_moved", "lane",
-      "Number of threads that went to another warp, those among them that did not run."};
+  stats::Counter threads_moved{this, "threads_moved", "lane",
+                               "Number of threads that went to another warp, whether they ran or waited."};
   stats::Ratio moved_share{this,       "moved_share",
                            "fraction", threads_moved,
                            threads,    "Threads that went to another warp, for each that came."};

@@ -45,8 +45,7 @@ struct NodeWalk {
 //  - arrange() may only exchange the children of a node among themselves. The layout, place() and encode()
 //    come afterwards.
 //  - place() gives each node bytes of its own, behind the header. The root lies at block kRootBlock. Where
-//  the
-//    format leaves a choice, nodes lie in the order that it is given.
+//    the format leaves a choice, nodes lie in the given order.
 //  - encode() returns the whole structure from the header on, as long as the placement says. The header is
 //    left zero, and so is what lies behind the last node.
 //  - Every decoded box contains the box that was encoded; children keep their order.

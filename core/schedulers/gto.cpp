@@ -1,7 +1,6 @@
 // Implements the issue policy `gto`: it takes the warp issued last while that is ready, else the oldest ready
 // warp.
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
 #include <string_view>
 
 #include "core/issue_scheduler.h"
@@ -24,14 +23,9 @@ class GreedyThenOldest final : public IssueScheduler {
   uint32_t pick(const IssueView& view) override {
     // A new warp in the same slot is not the warp that was issued last.
     if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
-    uint32_t oldest = uint32_t(std::countr_zero(view.ready));
-    for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {
-      const uint32_t i = uint32_t(std::countr_zero(rest));
-      if (view.age[i] < view.age[oldest]) oldest = i;
-    }
-    last_ = oldest;
-    last_age_ = view.age[oldest];
-    return oldest;
+    last_ = oldest_of(view.ready, view);
+    last_age_ = view.age[last_];
+    return last_;
   }
 
  private:

@@ -1,6 +1,5 @@
 // Implements the issue policy `oldest`: it always takes the ready warp that was launched first.
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
 #include <string_view>
 
 #include "core/issue_scheduler.h"
@@ -17,14 +16,7 @@ class OldestFirst final : public IssueScheduler {
   };
   OldestFirst(Params, Context) {}
 
-  uint32_t pick(const IssueView& view) override {
-    uint32_t oldest = uint32_t(std::countr_zero(view.ready));
-    for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {
-      const uint32_t i = uint32_t(std::countr_zero(rest));
-      if (view.age[i] < view.age[oldest]) oldest = i;
-    }
-    return oldest;
-  }
+  uint32_t pick(const IssueView& view) override { return oldest_of(view.ready, view); }
 };
 
 const Register<IssueScheduler, OldestFirst> registered;

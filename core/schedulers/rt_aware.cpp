@@ -30,7 +30,7 @@ class RtAware final : public IssueScheduler {
 
   uint32_t pick(const IssueView& view) override {
     const uint64_t at_rays = view.ready & view.rt.at_rays;
-    const uint32_t warp = view.rt.has_room && at_rays ? oldest(at_rays, view)
+    const uint32_t warp = view.rt.has_room && at_rays ? oldest_of(at_rays, view)
                           : view.rt.has_room          ? nearest(view)
                                                       : same_or_oldest(view);
     Progress& progress = progress_[warp];
@@ -46,14 +46,6 @@ class RtAware final : public IssueScheduler {
     uint64_t age = ~uint64_t{0}, issued = 0;
   };
 
-  static uint32_t oldest(uint64_t warps, const IssueView& view) {
-    uint32_t best = uint32_t(std::countr_zero(warps));
-    for (uint64_t rest = warps & (warps - 1); rest; rest &= rest - 1) {
-      const uint32_t i = uint32_t(std::countr_zero(rest));
-      if (view.age[i] < view.age[best]) best = i;
-    }
-    return best;
-  }
   uint64_t issued(uint32_t warp, const IssueView& view) const {
     return progress_[warp].age == view.age[warp] ? progress_[warp].issued : 0;
   }
@@ -69,11 +61,11 @@ class RtAware final : public IssueScheduler {
         warps |= uint64_t{1} << i;
       }
     }
-    return oldest(warps, view);
+    return oldest_of(warps, view);
   }
   uint32_t same_or_oldest(const IssueView& view) const {
     const bool is_same = (view.ready >> last_ & 1) && progress_[last_].age == view.age[last_];
-    return is_same ? last_ : oldest(view.ready, view);
+    return is_same ? last_ : oldest_of(view.ready, view);
   }
 
   std::array<Progress, kMaxWarpsPerScheduler> progress_{};

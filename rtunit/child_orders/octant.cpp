@@ -13,8 +13,7 @@ class OctantOrder final : public ChildOrder {
   static constexpr std::string_view kName = "octant";
   static constexpr std::string_view kDoc =
       "The signs of the ray's direction give the order of the children's slots. Nothing is sorted, and the "
-      "node "
-      "format must place the children by octant, as cwbvh does.";
+      "node format must place the children by octant, as cwbvh does.";
   struct Params {
     static ParamList params() { return {}; }
   };

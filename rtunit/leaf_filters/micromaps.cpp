@@ -72,10 +72,12 @@ class MicromapFilter final : public LeafFilter {
     stats::Group group;
     stats::Counter looked_up{&group, "looked_up", "candidate",
                              "Number of candidates that the filter was asked about."};
-    stats::Counter opaque{&group, "opaque", "candidate", "Number of them that were hits without a shader."};
+    stats::Counter opaque{&group, "opaque", "candidate",
+                          "Number of candidates that were hits without a shader."};
     stats::Counter transparent{&group, "transparent", "candidate",
-                               "Number of them that rays passed without a shader."};
-    stats::Counter unknown{&group, "unknown", "candidate", "Number of them that a shader had to decide."};
+                               "Number of candidates that rays passed without a shader."};
+    stats::Counter unknown{&group, "unknown", "candidate",
+                           "Number of candidates that a shader had to decide."};
     stats::Counter reads{&group, "reads", "lane",
                          "Number of times that a lane read states. Lanes that read the same sector may share "
                          "a fetch."};

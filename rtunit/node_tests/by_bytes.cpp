@@ -3,7 +3,7 @@
 
 #include "base/registry.h"
 #include "rtunit/node_test.h"
-#include "rtunit/structure/structure.h"
+#include "rtunit/node_tests/leaf_triangles.h"
 
 namespace glint::rt {
 namespace {
@@ -31,7 +31,7 @@ class ByBytes final : public NodeTest {
     if (node.kind == NodeKind::Internal)
       return uint8_t((node.bytes + params_.box_bytes - 1) / params_.box_bytes);
     if (node.kind != NodeKind::Triangle || params_.triangles > 1) return 1;
-    return load<TriangleLeaf>(memory_.find(node.address, sizeof(TriangleLeaf))).count > 1 ? 2 : 1;
+    return triangles_of(node, memory_);
   }
 
  private:

@@ -3,7 +3,7 @@
 
 #include "base/registry.h"
 #include "rtunit/node_test.h"
-#include "rtunit/structure/structure.h"
+#include "rtunit/node_tests/leaf_triangles.h"
 
 namespace glint::rt {
 namespace {
@@ -19,8 +19,7 @@ class ByNode final : public NodeTest {
   ByNode(Params, Context context) : memory_(context.memory) {}
 
   uint8_t starts(const Fetch& node) const override {
-    if (node.kind != NodeKind::Triangle) return 1;
-    return load<TriangleLeaf>(memory_.find(node.address, sizeof(TriangleLeaf))).count > 1 ? 2 : 1;
+    return node.kind == NodeKind::Triangle ? triangles_of(node, memory_) : 1;
   }
 
  private:

@@ -6,6 +6,7 @@
 
 #include "base/registry.h"
 #include "memsys/ring.h"
+#include "rtunit/pools/given_warps.h"
 #include "rtunit/ray_pool.h"
 
 namespace glint::rt {
@@ -13,9 +14,11 @@ namespace {
 
 // A warp that the core gave begins as it is. Rays whose look-up gives a node (rt.entry) leave it, because
 // they are short when the node is right. 32 of them form a warp; when the oldest of them has waited for
-// `wait` cycles, a warp is formed of fewer. The other rays stay where they are. Source: Liu et al.,
-// "Intersection prediction for accelerated GPU ray tracing", MICRO 2021. Choice: these warps take slots of
-// the warp buffer, where the published ones have slots of their own.
+// `wait` cycles, a warp is formed of fewer. The other rays stay where they are.
+//
+// Source: Liu et al., "Intersection prediction for accelerated GPU ray tracing", MICRO 2021.
+//
+// Choice: these warps take slots of the warp buffer, where the published ones have slots of their own.
 class Predicted final : public RayPool {
  public:
   static constexpr std::string_view kName = "predicted";
@@ -37,19 +40,14 @@ class Predicted final : public RayPool {
     if (ray.is_predicted)
       predicted_.push({ray.id, now});
     else
-      others_.push(ray.id);
+      new_.push(ray.id);
   }
 
   uint32_t form(std::span<uint32_t, kLanes> ids, Cycle now) override {
+    if (predicted_.size() < size_t(kLanes) && next_event(now) > now) return new_.take(ids);
     uint32_t count = 0;
-    if (predicted_.size() >= size_t(kLanes) || next_event(now) <= now) {
-      for (; count < uint32_t(kLanes) && !predicted_.empty(); predicted_.pop())
-        ids[count++] = predicted_.front().id;
-    } else if (!others_.empty()) {
-      const uint32_t warp = others_.front() / kLanes;
-      for (; !others_.empty() && others_.front() / kLanes == warp; others_.pop())
-        ids[count++] = others_.front();
-    }
+    for (; count < uint32_t(kLanes) && !predicted_.empty(); predicted_.pop())
+      ids[count++] = predicted_.front().id;
     return count;
   }
 
@@ -66,7 +64,7 @@ class Predicted final : public RayPool {
 
   const Cycle wait_;
   mem::Ring<Waiting> predicted_;  // in order of arrival
-  mem::Ring<uint32_t> others_;    // ids, warp after warp
+  GivenWarps new_;
 };
 
 const Register<RayPool, Predicted> registered;

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "base/num_lanes.h"
 #include "base/registry.h"
 #include "memsys/ring.h"
+#include "rtunit/pools/given_warps.h"
 #include "rtunit/ray_pool.h"
 
 namespace glint::rt {
@@ -31,30 +31,26 @@ class Repack final : public RayPool {
   };
   Repack(Params params, Context) : least_(params.least) {}
 
-  void add(const WaitingRay& ray, Cycle) override { (ray.is_new ? new_ : returned_).push(ray.id); }
+  void add(const WaitingRay& ray, Cycle) override {
+    if (ray.is_new)
+      new_.push(ray.id);
+    else
+      returned_.push(ray.id);
+  }
 
   uint32_t form(std::span<uint32_t, kLanes> ids, Cycle) override {
     uint32_t count = 0;
-    if (returned_.size() < size_t(kLanes) && !new_.empty())
-      for (const uint32_t warp = new_.front() / kLanes; !new_.empty() && new_.front() / kLanes == warp;)
-        take(new_, ids, count);
-    while (count < uint32_t(kLanes) && !returned_.empty()) take(returned_, ids, count);
+    if (returned_.size() < size_t(kLanes)) count = new_.take(ids);
+    for (; count < uint32_t(kLanes) && !returned_.empty(); returned_.pop()) ids[count++] = returned_.front();
     return count;
   }
 
-  bool goes_back(const FormedWarp& warp, int) override {
-    const uint32_t running = num_lanes(warp.running);
-    return running < least_ && running + warp.waiting >= uint32_t(kLanes);
-  }
+  bool goes_back(const FormedWarp& warp, int) override { return is_thin(warp, least_); }
 
  private:
-  static void take(mem::Ring<uint32_t>& from, std::span<uint32_t, kLanes> ids, uint32_t& count) {
-    ids[count++] = from.front();
-    from.pop();
-  }
-
   const uint32_t least_;
-  mem::Ring<uint32_t> new_, returned_;  // ids, in order of arrival
+  GivenWarps new_;
+  mem::Ring<uint32_t> returned_;  // ids, in order of arrival
 };
 
 const Register<RayPool, Repack> registered;

@@ -10,10 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "base/num_lanes.h"
 #include "base/registry.h"
 #include "base/stats.h"
-#include "memsys/ring.h"
+#include "rtunit/pools/given_warps.h"
 #include "rtunit/ray_pool.h"
 #include "rtunit/traversal/traversal.h"
 #include "rtunit/treelets.h"
@@ -121,16 +120,12 @@ class TreeletQueues final : public RayPool {
   }
 
   uint32_t form(std::span<uint32_t, kLanes> ids, Cycle) override {
-    uint32_t count = 0;
     forming_ = {};
-    if (!new_.empty()) {
-      const uint32_t warp = new_.front() / kLanes;
-      for (; !new_.empty() && new_.front() / kLanes == warp; new_.pop()) ids[count++] = new_.front();
-      return count;
-    }
+    if (!new_.empty()) return new_.take(ids);
     if (queues_.empty()) return 0;
     if (!queues_.has(served_))
       served_ = queues_.longest_size() >= params_.queue ? queues_.longest() : kNoTreelet;
+    uint32_t count = 0;
     if (served_ != kNoTreelet) {
       forming_ = {Phase::OneTreelet, served_};
       while (count < uint32_t(kLanes) && queues_.has(served_)) ids[count++] = queues_.pop(served_);
@@ -147,10 +142,7 @@ class TreeletQueues final : public RayPool {
 
   bool goes_back(const FormedWarp& from, int lane) override {
     Warp& warp = warps_[from.slot];
-    if (warp.phase == Phase::Mixed) {
-      const uint32_t running = num_lanes(from.running);
-      return running < params_.least && running + from.waiting >= uint32_t(kLanes);
-    }
+    if (warp.phase == Phase::Mixed) return is_thin(from, params_.least);
     const TreeletId treelet = treelet_of(from.rays[size_t(lane)]);
     if (warp.phase == Phase::OneTreelet) return treelet != warp.treelet;
     if (!warp.has_spread && warp.at[size_t(lane)] != treelet) {
@@ -195,7 +187,7 @@ class TreeletQueues final : public RayPool {
   std::vector<Warp> warps_;  // by slot of the warp buffer
   Warp forming_;             // the warp that form() has named last
   TreeletId served_ = kNoTreelet;
-  mem::Ring<uint32_t> new_;
+  GivenWarps new_;
   Queues queues_;
 };
 

@@ -1,6 +1,5 @@
 // Tests that every registered leaf filter keeps the promises of rtunit/leaf_filter.h.
 // SPDX-License-Identifier: Apache-2.0
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "rtunit/leaf_filter.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/rt_trace.h"
 #include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
@@ -59,17 +59,6 @@ std::vector<WarpRays> rays(const BuiltScene& built, const LeafFilter* filter, ui
   return out;
 }
 
-bool same_hits(const std::vector<WarpRays>& a, const std::vector<WarpRays>& b) {
-  bool same = true;
-  for (size_t w = 0; w < a.size(); ++w)
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-      const Hit &x = a[w][lane].committed, &y = b[w][lane].committed;
-      same =
-          same && std::memcmp(&x.t, &y.t, 12) == 0 && x.primitive == y.primitive && x.instance == y.instance;
-    }
-  return same;
-}
-
 void run_all(std::vector<WarpRays>& warps, const mem::AddressSpace& memory) {
   for (WarpRays& warp : warps)
     for (RayState& state : warp) run_to_end(state, memory);
@@ -93,7 +82,7 @@ TEST_CASE("a filter says what the shader would say, or nothing, and no hit chang
         auto plain = rays(built, nullptr, 0), filtered = rays(built, &witness, 0);
         run_all(plain, built.memory);
         run_all(filtered, built.memory);
-        CHECK(same_hits(plain, filtered));
+        require_same_hits(filtered, plain);
         CHECK(witness.asked > 100);
         CHECK((witness.decided > 50) == (name != LeafFilter::kNone));
         if (name != LeafFilter::kNone && format.two_states) CHECK(witness.decided == witness.asked);
@@ -175,8 +164,8 @@ TEST_CASE("in the unit a filter finds the same hits, is told of each look-up, an
     all.finish(a.last_completion + 1);
     some.finish(b.last_completion + 1);
     CHECK(a.completion == b.completion);
-    CHECK(same_hits(expected, ticked));
-    CHECK(same_hits(expected, skipped));
+    require_same_hits(ticked, expected);
+    require_same_hits(skipped, expected);
     const std::string listed = glint::test::listing(root_ticked);
     CHECK(glint::test::first_difference(listed, glint::test::listing(root_skipped)) == "");
     if (name == LeafFilter::kNone) continue;

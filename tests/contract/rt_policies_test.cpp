@@ -9,6 +9,7 @@
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/rt_trace.h"
 #include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
@@ -38,11 +39,6 @@ struct Rays {
       }
   }
 };
-
-bool same_hit(const Hit& a, const Hit& b) {
-  return std::memcmp(&a.t, &b.t, 12) == 0 && a.kind == b.kind && a.instance == b.instance &&
-         a.geometry == b.geometry && a.primitive == b.primitive;
-}
 
 // Takes the next policy of a kind from a number, which has a digit for each kind.
 template <class Interface>
@@ -150,16 +146,8 @@ TEST_CASE(
         skipped(combination, scene, gather);
     mem::FixedLatencyMemory l1_ticked(20, 2), l1_skipped(20, 2);
     stats::Group root_ticked(nullptr, "ticked"), root_skipped(nullptr, "skipped");
-    const auto context = [&](mem::FixedLatencyMemory& l1, stats::Group& root) {
-      return RtUnit::Context{scene.memory,
-                             l1,
-                             &root,
-                             Address{1} << 30,
-                             {Address{1} << 31, gather ? 3u : 0u},
-                             Address{1} << 32,
-                             Address{1} << 33};
-    };
-    RtUnit all(params, context(l1_ticked, root_ticked)), some(params, context(l1_skipped, root_skipped));
+    RtUnit all(params, context_of(scene.memory, l1_ticked, root_ticked, gather ? 3 : 0)),
+        some(params, context_of(scene.memory, l1_skipped, root_skipped, gather ? 3 : 0));
     const Launch a = launch(all, l1_ticked, ticked.warps, true),
                  b = launch(some, l1_skipped, skipped.warps, false);
     REQUIRE(a.completion == b.completion);

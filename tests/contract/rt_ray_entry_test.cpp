@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/rt_trace.h"
 #include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
@@ -66,16 +66,6 @@ class Gambler final : public RayEntry {
 };
 const Register<RayEntry, Gambler> registered;
 
-struct Outcome {
-  std::vector<Cycle> completion;
-  std::string stats;
-  std::vector<WarpRays> rays;
-};
-
-uint64_t count(const Outcome& outcome, const std::string& name) {
-  return glint::test::counter_in(outcome.stats, name);
-}
-
 // Makes warps of rays that come from few places in few directions.
 std::vector<WarpRays> rays_of(const BuiltScene& scene,
                               std::vector<std::array<CandidateTable, kLanes>>* tables) {
@@ -98,20 +88,10 @@ std::vector<WarpRays> rays_of(const BuiltScene& scene,
   return out;
 }
 
-Outcome trace(const BuiltScene& scene, const Params& params, bool gather, bool every_cycle) {
+Traced trace(const BuiltScene& scene, const Params& params, bool gather, bool every_cycle) {
   std::vector<std::array<CandidateTable, kLanes>> tables(12);
-  Outcome out;
-  out.rays = rays_of(scene, gather ? &tables : nullptr);
-  stats::Group root(nullptr, "test");
-  mem::FixedLatencyMemory l1(30, 2);
-  RtUnit unit(
-      params,
-      {scene.memory, l1, &root, Address{1} << 30, {Address{1} << 31, gather ? 3u : 0u}, Address{1} << 32});
-  const Launch done = launch(unit, l1, out.rays, every_cycle);
-  unit.finish(done.last_completion + 1);
-  out.completion = done.completion;
-  out.stats = glint::test::listing(root);
-  return out;
+  return trace_rays(params, scene.memory, rays_of(scene, gather ? &tables : nullptr),
+                    mem::FixedLatencyMemory(30, 2), every_cycle, gather ? 3 : 0);
 }
 
 TEST_CASE("an entry changes no hit, and skipping to events changes no cycle and no count") {
@@ -141,26 +121,19 @@ TEST_CASE("an entry changes no hit, and skipping to events changes no cycle and 
           ++number;
           if (!RtUnit::why_not_together(params).empty()) params.mapping.name = WorkMapping::kOwnRay;
           CAPTURE(format, name, stack, gather, number, params.prefetch.name, params.mapping.name);
-          const Outcome a = trace(built, params, gather, true), b = trace(built, params, gather, false);
+          const Traced a = trace(built, params, gather, true), b = trace(built, params, gather, false);
           REQUIRE(a.completion == b.completion);
           CHECK(glint::test::first_difference(a.stats, b.stats) == "");
-          for (size_t w = 0; w < expected.size(); ++w)
-            for (size_t lane = 0; lane < kLanes; ++lane) {
-              const Hit &e = expected[w][lane].committed, &found = a.rays[w][lane].committed;
-              REQUIRE(a.rays[w][lane].status == RayStatus::Done);
-              REQUIRE(std::memcmp(&e.t, &found.t, 12) == 0);
-              REQUIRE((e.instance == found.instance && e.geometry == found.geometry &&
-                       e.primitive == found.primitive && e.kind == found.kind));
-              hits += e.valid();
-            }
-          CHECK((count(a, "looked_up") != 0) == (name != RayEntry::kRoot));
-          CHECK(count(a, "verified") + count(a, "wrong") <= count(a, "predicted"));
-          predicted += count(a, "predicted");
-          verified += count(a, "verified");
-          wrong += count(a, "wrong");
-          restarts += count(a, "restarts");
-          moves += count(a, "moves");
-          spills += count(a, "stack_spills");
+          require_same_hits(a.rays, expected);
+          hits += num_hits(expected);
+          CHECK((a.count("looked_up") != 0) == (name != RayEntry::kRoot));
+          CHECK(a.count("verified") + a.count("wrong") <= a.count("predicted"));
+          predicted += a.count("predicted");
+          verified += a.count("verified");
+          wrong += a.count("wrong");
+          restarts += a.count("restarts");
+          moves += a.count("moves");
+          spills += a.count("stack_spills");
         }
   }
   // Each mechanism must have been at work.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <fmt/format.h>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/config.h"
@@ -13,6 +13,7 @@
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/rt_trace.h"
 #include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
@@ -80,13 +81,6 @@ TEST_CASE("a pool names each waiting ray once, and repeats itself exactly") {
   }
 }
 
-struct Outcome {
-  std::vector<WarpRays> rays;
-  std::vector<Cycle> completion;
-  std::string stats;
-  uint64_t returned = 0, treelet_warps = 0;
-};
-
 template <class Interface = RayPool>
 PolicyChoice<Interface> chosen(const std::string& name, const std::string& params) {
   PolicyChoice<Interface> choice(name.c_str());
@@ -99,48 +93,19 @@ PolicyChoice<Interface> chosen(const std::string& name, const std::string& param
   return choice;
 }
 
-uint64_t count_of(const std::string& stats, const std::string& name) {
-  const auto at =
-      std::min(stats.find("\n" + name + "="), stats.find("{" + name + "="));  // the first of a group
-  return at == std::string::npos ? 0 : std::stoull(stats.substr(at + name.size() + 2));
-}
-
 // Traces warps of which only some lanes have rays, and these of very different lengths.
-Outcome trace(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top, uint64_t seed,
-              uint32_t flags, bool every_cycle) {
+Traced trace(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top, uint64_t seed,
+             uint32_t flags, bool every_cycle) {
   Random random{seed};
-  Outcome out;
-  out.rays.resize(kWarps);
-  for (WarpRays& warp : out.rays)
+  std::vector<WarpRays> rays(kWarps);
+  for (WarpRays& warp : rays)
     for (RayState& state : warp) {
       state = ray_of(top.address, random.point(12), random.point(1), 0, random.below(3) ? 2 : 60);
       state.ray.flags = flags;
       state.rules.end_at_first_hit = false;
       REQUIRE(begin(state, memory));
     }
-  stats::Group root(nullptr, "test");
-  mem::FixedLatencyMemory l1(40, 1);
-  RtUnit unit(params, {memory, l1, &root, Address{1} << 30, {}, Address{1} << 32, Address{1} << 33});
-  const Launch done = launch(unit, l1, out.rays, every_cycle);
-  unit.finish(done.last_completion + 1);
-  out.completion = done.completion;
-  out.stats = glint::test::listing(root);
-  out.returned = count_of(out.stats, "returned");
-  out.treelet_warps = count_of(out.stats, "treelet_warps");
-  CHECK(unit.num_resident() == 0);
-  return out;
-}
-
-void require_same_hits(const Outcome& a, const Outcome& b) {
-  for (size_t w = 0; w < a.rays.size(); ++w)
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-      const Hit &found = a.rays[w][lane].committed, &expected = b.rays[w][lane].committed;
-      REQUIRE(a.rays[w][lane].status == RayStatus::Done);
-      REQUIRE(std::memcmp(&expected.t, &found.t, 12) == 0);
-      REQUIRE(expected.instance == found.instance);
-      REQUIRE(expected.primitive == found.primitive);
-      REQUIRE(expected.kind == found.kind);
-    }
+  return trace_rays(params, memory, std::move(rays), mem::FixedLatencyMemory(40, 1), every_cycle);
 }
 
 TEST_CASE("rays that change their warps find the hits that they find in one, with every other policy") {
@@ -169,16 +134,16 @@ TEST_CASE("rays that change their warps find the hits that they find in one, wit
             params.result_store = seed % 3 == 0;
             if (!RtUnit::why_not_together(params).empty()) continue;
             CAPTURE(name, stack, prefetch, scheduler, flags);
-            const Outcome a = trace(params, memory, top, seed, flags, true),
-                          b = trace(params, memory, top, seed, flags, false);
+            const Traced a = trace(params, memory, top, seed, flags, true),
+                         b = trace(params, memory, top, seed, flags, false);
             CHECK(a.completion == b.completion);
             CHECK(glint::test::first_difference(a.stats, b.stats) == "");
-            returned += a.returned;
+            returned += a.count("returned");
             runs += name != RayPool::kNone;
             Params alone = params;
             alone.pool.name = RayPool::kNone;
-            const Outcome c = trace(alone, memory, top, seed, flags, true);
-            require_same_hits(a, c);
+            const Traced c = trace(alone, memory, top, seed, flags, true);
+            require_same_hits(a.rays, c.rays);
           }
   CHECK(runs > 8);
   CHECK(returned > 1000);
@@ -191,16 +156,16 @@ TEST_CASE("the rays of a treelet form warps that they leave with it") {
   Params params;
   params.warps = 2;
   params.pool_warps = kWarps;
-  const Outcome alone = trace(params, memory, top, 3, 0, true);
+  const Traced alone = trace(params, memory, top, 3, 0, true);
   for (const int queue : {1, 2, 4096}) {
     CAPTURE(queue);
     params.pool = chosen("treelet_queues", fmt::format("spread = 1\nqueue = {}", queue));
-    const Outcome a = trace(params, memory, top, 3, 0, true), b = trace(params, memory, top, 3, 0, false);
+    const Traced a = trace(params, memory, top, 3, 0, true), b = trace(params, memory, top, 3, 0, false);
     CHECK(a.completion == b.completion);
     CHECK(glint::test::first_difference(a.stats, b.stats) == "");
-    require_same_hits(a, alone);
-    CHECK(a.returned > 20);
-    CHECK((a.treelet_warps > 5) == (queue != 4096));
+    require_same_hits(a.rays, alone.rays);
+    CHECK(a.count("returned") > 20);
+    CHECK((a.count("treelet_warps") > 5) == (queue != 4096));
   }
 }
 
@@ -213,20 +178,20 @@ TEST_CASE("rays whose look-up gave a node form warps of their own, and keep what
   params.warps = 2;
   params.pool_warps = kWarps;
   params.entry = chosen<RayEntry>("predictor", "origin_bits = 1\ndirection_bits = 1");
-  const Outcome none = trace(params, memory, top, 3, kFirstHit, true);
+  const Traced none = trace(params, memory, top, 3, kFirstHit, true);
   params.pool.name = "predicted";
-  const Outcome a = trace(params, memory, top, 3, kFirstHit, true),
-                b = trace(params, memory, top, 3, kFirstHit, false);
+  const Traced a = trace(params, memory, top, 3, kFirstHit, true),
+               b = trace(params, memory, top, 3, kFirstHit, false);
   CHECK(a.completion == b.completion);
   CHECK(glint::test::first_difference(a.stats, b.stats) == "");
-  CHECK(count_of(none.stats, "looked_up") == kWarps * kLanes);
-  CHECK(count_of(a.stats, "looked_up") == kWarps * kLanes);
-  CHECK(count_of(a.stats, "predicted") > 20);
-  CHECK(count_of(a.stats, "verified") > 0);
-  CHECK(a.returned == count_of(a.stats, "predicted"));
-  CHECK(count_of(a.stats, "state_reads") == 0);  // They have no state to move.
-  params.entry.name = RayEntry::kRoot;           // Nobody predicts anything.
-  CHECK(trace(params, memory, top, 3, kFirstHit, true).returned == 0);
+  CHECK(none.count("looked_up") == kWarps * kLanes);
+  CHECK(a.count("looked_up") == kWarps * kLanes);
+  CHECK(a.count("predicted") > 20);
+  CHECK(a.count("verified") > 0);
+  CHECK(a.count("returned") == a.count("predicted"));
+  CHECK(a.count("state_reads") == 0);   // They have no state to move.
+  params.entry.name = RayEntry::kRoot;  // Nobody predicts anything.
+  CHECK(trace(params, memory, top, 3, kFirstHit, true).count("returned") == 0);
 }
 
 TEST_CASE("a pool refuses what follows a ray in its lane") {

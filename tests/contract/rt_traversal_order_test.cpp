@@ -1,7 +1,6 @@
 // Tests that every registered traversal order keeps the promises of rtunit/traversal_order.h.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <set>
 #include <string>
@@ -11,16 +10,11 @@
 #include "rtunit/treelets.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/rt_trace.h"
 #include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
 namespace {
-
-struct Outcome {
-  std::vector<WarpRays> rays;
-  std::vector<Cycle> completion;
-  std::string stats;
-};
 
 std::vector<WarpRays> rays_of(const BuiltScene& scene, uint64_t seed) {
   Random random{seed};
@@ -35,17 +29,8 @@ std::vector<WarpRays> rays_of(const BuiltScene& scene, uint64_t seed) {
   return out;
 }
 
-Outcome trace(const BuiltScene& scene, const Params& params, uint64_t seed, bool every_cycle) {
-  Outcome out;
-  out.rays = rays_of(scene, seed);
-  stats::Group root(nullptr, "test");
-  mem::FixedLatencyMemory l1(30, 2);
-  RtUnit unit(params, {scene.memory, l1, &root, Address{1} << 30, {}, Address{1} << 32});
-  const Launch done = launch(unit, l1, out.rays, every_cycle);
-  unit.finish(done.last_completion + 1);
-  out.completion = done.completion;
-  out.stats = glint::test::listing(root);
-  return out;
+Traced trace(const BuiltScene& scene, const Params& params, uint64_t seed, bool every_cycle) {
+  return trace_rays(params, scene.memory, rays_of(scene, seed), mem::FixedLatencyMemory(30, 2), every_cycle);
 }
 
 TEST_CASE("no order changes a hit, with every layout, format, mapping and prefetcher") {
@@ -69,22 +54,15 @@ TEST_CASE("no order changes a hit, with every layout, format, mapping and prefet
             params.warps = uint32_t(1 + number % 3);
             CAPTURE(format, layout, name, retest, mapping, params.prefetch.name);
             REQUIRE(RtUnit::why_not_together(params).empty());
-            const Outcome a = trace(built, params, number, true), b = trace(built, params, number, false);
+            const Traced a = trace(built, params, number, true), b = trace(built, params, number, false);
             CHECK(a.completion == b.completion);
             CHECK(glint::test::first_difference(a.stats, b.stats) == "");
-            CHECK((glint::test::counter_in(a.stats, "arranged") != 0) ==
-                  (name != TraversalOrder::kDepthFirst));
+            CHECK((a.count("arranged") != 0) == (name != TraversalOrder::kDepthFirst));
             std::vector<WarpRays> expected = rays_of(built, number);
-            for (size_t w = 0; w < expected.size(); ++w)
-              for (size_t lane = 0; lane < kLanes; ++lane) {
-                run_to_end(expected[w][lane], built.memory);
-                const Hit &e = expected[w][lane].committed, &found = a.rays[w][lane].committed;
-                REQUIRE(a.rays[w][lane].status == RayStatus::Done);
-                REQUIRE(std::memcmp(&e.t, &found.t, 12) == 0);
-                REQUIRE((e.instance == found.instance && e.geometry == found.geometry &&
-                         e.primitive == found.primitive && e.kind == found.kind));
-                hits += e.valid();
-              }
+            for (WarpRays& warp : expected)
+              for (RayState& ray : warp) run_to_end(ray, built.memory);
+            require_same_hits(a.rays, expected);
+            hits += num_hits(expected);
           }
     }
   }
@@ -191,8 +169,7 @@ TEST_CASE("an order falls back to depth first before a ray's stack is full") {
   const RayState& found = rays[0][5];
   CHECK_FALSE(found.broken);
   REQUIRE(expected.committed.valid());
-  CHECK(std::memcmp(&expected.committed.t, &found.committed.t, 12) == 0);
-  CHECK(expected.committed.primitive == found.committed.primitive);
+  CHECK(same_hit(expected.committed, found.committed));
   CHECK(found.stack_peak > 100);
   CHECK(found.stack_peak <= kStackEntries);
   CHECK(glint::test::counter_in(glint::test::listing(root), "without_room") > 10);

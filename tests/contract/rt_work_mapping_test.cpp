@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_brute.h"
+#include "tests/support/rt_trace.h"
 #include "tests/support/stat_listing.h"
 
 namespace glint::rt::test {
@@ -45,36 +46,19 @@ TEST_CASE("a mapping moves from a giver to a taker, and repeats itself exactly")
   }
 }
 
-struct Outcome {
-  std::vector<WarpRays> rays;
-  std::vector<Cycle> completion;
-  std::string stats;
-  uint64_t moves = 0;
-};
-
 // Traces warps of which only some lanes have rays, and these of very different lengths.
-Outcome trace(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top, uint64_t seed,
-              uint32_t flags, bool every_cycle) {
+Traced trace(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top, uint64_t seed,
+             uint32_t flags, bool every_cycle) {
   Random random{seed};
-  Outcome out;
-  out.rays.resize(5);
-  for (WarpRays& warp : out.rays)
+  std::vector<WarpRays> rays(5);
+  for (WarpRays& warp : rays)
     for (RayState& state : warp) {
       state = ray_of(top.address, random.point(12), random.point(1), 0, random.below(3) ? 2 : 60);
       state.ray.flags = flags;
       state.rules.end_at_first_hit = false;
       REQUIRE(begin(state, memory));
     }
-  stats::Group root(nullptr, "test");
-  mem::FixedLatencyMemory l1(40, 1);
-  RtUnit unit(params, {memory, l1, &root, Address{1} << 30, {}, Address{1} << 32});
-  const Launch done = launch(unit, l1, out.rays, every_cycle);
-  unit.finish(done.last_completion + 1);
-  out.completion = done.completion;
-  out.stats = glint::test::listing(root);
-  const auto at = out.stats.find("moves=");
-  if (at != std::string::npos) out.moves = std::stoull(out.stats.substr(at + 6));
-  return out;
+  return trace_rays(params, memory, std::move(rays), mem::FixedLatencyMemory(40, 1), every_cycle);
 }
 
 TEST_CASE("rays whose work lanes share find the hits that they find alone, with every other policy") {
@@ -98,24 +82,16 @@ TEST_CASE("rays whose work lanes share find the hits that they find alone, with 
             params.result_store = seed % 3 == 0;
             if (!RtUnit::why_not_together(params).empty()) continue;
             CAPTURE(name, stack, prefetch, retest, flags);
-            const Outcome a = trace(params, memory, top, seed, flags, true),
-                          b = trace(params, memory, top, seed, flags, false);
+            const Traced a = trace(params, memory, top, seed, flags, true),
+                         b = trace(params, memory, top, seed, flags, false);
             CHECK(a.completion == b.completion);
             CHECK(glint::test::first_difference(a.stats, b.stats) == "");
-            moves += a.moves;
-            CHECK((a.moves != 0) == (name != WorkMapping::kOwnRay));
+            moves += a.count("moves");
+            CHECK((a.count("moves") != 0) == (name != WorkMapping::kOwnRay));
             Params alone = params;
             alone.mapping.name = WorkMapping::kOwnRay;
-            const Outcome c = trace(alone, memory, top, seed, flags, true);
-            for (size_t w = 0; w < c.rays.size(); ++w)
-              for (size_t lane = 0; lane < kLanes; ++lane) {
-                const Hit &expected = c.rays[w][lane].committed, &found = a.rays[w][lane].committed;
-                REQUIRE(a.rays[w][lane].status == RayStatus::Done);
-                REQUIRE(std::memcmp(&expected.t, &found.t, 12) == 0);
-                REQUIRE(expected.instance == found.instance);
-                REQUIRE(expected.primitive == found.primitive);
-                REQUIRE(expected.kind == found.kind);
-              }
+            const Traced c = trace(alone, memory, top, seed, flags, true);
+            require_same_hits(a.rays, c.rays);
           }
   CHECK(moves > 5000);
 }
@@ -128,12 +104,12 @@ TEST_CASE("a ray that may need a shader is not shared, and gets its shader") {
     const StructureInfo top = single(memory, triangles(positions, opaque));
     Params params;
     params.mapping.name = "cooperative";
-    const Outcome plain = trace(params, memory, top, 3, 0, true);
-    CHECK((plain.moves != 0) == opaque);
-    const Outcome forced = trace(params, memory, top, 3, ray_flag::kOpaque, true);
-    CHECK(forced.moves != 0);
-    const Outcome refused = trace(params, memory, top, 3, ray_flag::kNoOpaque, true);
-    CHECK(refused.moves == 0);
+    const Traced plain = trace(params, memory, top, 3, 0, true);
+    CHECK((plain.count("moves") != 0) == opaque);
+    const Traced forced = trace(params, memory, top, 3, ray_flag::kOpaque, true);
+    CHECK(forced.count("moves") != 0);
+    const Traced refused = trace(params, memory, top, 3, ray_flag::kNoOpaque, true);
+    CHECK(refused.count("moves") == 0);
   }
 }
 
