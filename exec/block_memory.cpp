@@ -11,19 +11,38 @@
 
 namespace glint::exec {
 
-std::vector<AllocationUse> uses_of(const mem::AddressSpace& memory) {
-  std::vector<AllocationUse> out(memory.allocations().size(), AllocationUse::Read);
-  for (size_t i = 0; i < out.size(); ++i) {
-    const mem::AddressSpace::Allocation& allocation = memory.allocations()[i];
-    uint32_t magic = 0;
-    if (!allocation.data || allocation.bytes < sizeof(rt::StructureHeader)) continue;
-    std::memcpy(&magic, allocation.data, sizeof magic);
-    if (magic != rt::StructureHeader::kMagic) continue;
-    // A structure past 4 GiB has several numbers.
-    const size_t numbers = size_t((allocation.bytes - 1) >> mem::AddressSpace::kShift) + 1;
-    std::fill_n(out.begin() + ptrdiff_t(i), std::min(numbers, out.size() - i), AllocationUse::Structure);
+namespace {
+
+constexpr uintptr_t kHostLine = 64;  // bytes on the host
+
+// Returns whether a slot begins with an acceleration structure.
+bool holds_structure(const mem::AddressSpace::Slot& slot) {
+  uint32_t magic = 0;
+  if (slot.bytes < sizeof(rt::StructureHeader)) return false;
+  std::memcpy(&magic, slot.data, sizeof magic);
+  return magic == rt::StructureHeader::kMagic;
+}
+
+}  // namespace
+
+// In order of their places on the host, slots that share lines follow each other.
+MemoryUses::MemoryUses(const mem::AddressSpace& memory) : numbers_(memory.slots().size()) {
+  const auto slots = memory.slots();
+  std::vector<uint32_t> order;
+  for (uint32_t i = 0; i < slots.size(); ++i)
+    if (slots[i].bytes) order.push_back(i);
+  const auto place_of = [&](uint32_t i) { return reinterpret_cast<uintptr_t>(slots[i].data); };
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return place_of(a) != place_of(b) ? place_of(a) < place_of(b) : a < b;
+  });
+  uintptr_t end = 0;  // of the allocation's last line
+  uses_.push_back(AllocationUse::Read);
+  for (const uint32_t i : order) {
+    if (place_of(i) >= end) uses_.push_back(AllocationUse::Read);
+    end = std::max(end, (place_of(i) + uintptr_t(slots[i].bytes) + kHostLine - 1) / kHostLine * kHostLine);
+    numbers_[i] = uint32_t(uses_.size() - 1);
+    if (holds_structure(slots[i])) uses_.back() = AllocationUse::Structure;
   }
-  return out;
 }
 
 size_t LineIndex::slot_of(const std::byte* place) const {
@@ -97,7 +116,7 @@ bool BlockMemory::has_read(const WrittenBytes& written) const {
   return false;
 }
 
-void BlockMemory::commit(WrittenBytes& written, std::vector<AllocationUse>& uses) const {
+void BlockMemory::commit(WrittenBytes& written, MemoryUses& uses) const {
   for (size_t n = 0; n < num_lines_; ++n) {
     const Line& mine = line(n);
     if (!mine.written) continue;

@@ -14,13 +14,28 @@
 
 namespace glint::exec {
 
-// Says what the blocks of a launch do with each allocation of memory, as far as they have run.
+// Says what the blocks of a launch do with an allocation of memory, as far as they have run.
 enum class AllocationUse : uint8_t {
   Read,       // Nobody has written it.
   Written,    // Some block has written it.
   Structure,  // It holds an acceleration structure, which rays read without asking here.
 };
-std::vector<AllocationUse> uses_of(const mem::AddressSpace& memory);
+
+// Holds the use of each allocation. Windows that share a line of the host count as one allocation.
+class MemoryUses {
+ public:
+  explicit MemoryUses(const mem::AddressSpace& memory);
+
+  // Returns the number of the allocation at an address.
+  size_t number_of(Address address) const { return numbers_[size_t(address >> mem::AddressSpace::kShift)]; }
+  size_t size() const { return uses_.size(); }
+  AllocationUse& operator[](size_t number) { return uses_[number]; }
+  AllocationUse operator[](size_t number) const { return uses_[number]; }
+
+ private:
+  std::vector<uint32_t> numbers_;  // by slot
+  std::vector<AllocationUse> uses_;
+};
 
 // Finds lines by their place in memory.
 class LineIndex {
@@ -62,13 +77,12 @@ class WrittenBytes {
 class BlockMemory {
  public:
   // `uses` outlives the block's run.
-  explicit BlockMemory(const std::vector<AllocationUse>& uses)
-      : uses_(uses), is_own_(uses.size()), is_read_(uses.size()) {}
+  explicit BlockMemory(const MemoryUses& uses) : uses_(uses), is_own_(uses.size()), is_read_(uses.size()) {}
 
   // Returns where an access of up to 64 bytes, which lie in one line, finds or leaves its data. `at` is their
   // place in memory.
   std::byte* place(Address address, std::byte* at, uint32_t bytes, isa::Effect effect) {
-    const size_t allocation = size_t(address >> mem::AddressSpace::kShift);
+    const size_t allocation = uses_.number_of(address);
     if (is_load(effect) && !is_own_[allocation] && uses_[allocation] != AllocationUse::Written) {
       is_read_[allocation] = 1;
       return at;
@@ -77,7 +91,7 @@ class BlockMemory {
   }
   // Notes that the block reads an allocation, and the place of the data is not asked for.
   void read_as_it_is(Address address) {
-    const size_t allocation = size_t(address >> mem::AddressSpace::kShift);
+    const size_t allocation = uses_.number_of(address);
     is_read_[allocation] = 1;
     is_unsuited_ |= is_own_[allocation] || uses_[allocation] == AllocationUse::Written;
   }
@@ -89,7 +103,7 @@ class BlockMemory {
   bool has_read(const WrittenBytes& written) const;
   size_t num_lines() const { return num_lines_; }  // of copies
   // Puts what the block has written into memory, into `written` and into `uses`.
-  void commit(WrittenBytes& written, std::vector<AllocationUse>& uses) const;
+  void commit(WrittenBytes& written, MemoryUses& uses) const;
 
  private:
   static constexpr uint32_t kLine = 64;  // bytes; allocations are aligned to it on the host
@@ -108,7 +122,7 @@ class BlockMemory {
   Line& line_of(size_t allocation, std::byte* place);
   Line& line(size_t number) const { return (*lines_[number / kLines])[number % kLines]; }
 
-  const std::vector<AllocationUse>& uses_;
+  const MemoryUses& uses_;
   std::vector<uint8_t> is_own_, is_read_;  // by allocation: whether the block wrote it, or read all of it
   bool is_unsuited_ = false;
   LineIndex index_;

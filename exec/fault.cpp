@@ -80,11 +80,7 @@ std::string FaultLog::with(const Fault& last) const {
 }
 
 std::string whereabouts(const mem::AddressSpace& memory, Address address, uint64_t bytes) {
-  const uint64_t offset = address & ((uint64_t{1} << mem::AddressSpace::kShift) - 1);
-  if (memory.find(address, bytes)) {
-    const auto& object = memory.allocations()[size_t(address >> mem::AddressSpace::kShift)];
-    return fmt::format("byte {} of '{}' ({} bytes)", offset, object.name, object.bytes);
-  }
+  if (memory.find(address, bytes)) return memory.describe(address);
   if (const auto place = isa::unbound_place(address))
     return fmt::format("set {} binding {}, to which nothing is bound", place->set, place->binding);
   return memory.explain(address, bytes);

@@ -6,22 +6,36 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <sys/mman.h>
 #include <type_traits>
 #include <utility>
 
 namespace glint::mem {
 
+// Frees memory of std::malloc, or `mapped` bytes of pages.
+struct FreeHostMemory {
+  size_t mapped = 0;
+  void operator()(void* memory) const {
+    if (mapped)
+      munmap(memory, mapped);
+    else
+      std::free(memory);
+  }
+};
+
 // Holds bytes that are 0 at first and aligned to 64 bytes. The host gives a page of a large block when the
-// page is first touched, so that the threads that fill a block also share the cost of its pages. A moved
-// block is empty. Throws std::bad_alloc when the host has no memory.
+// page is first touched, so that the threads that fill a block also share the cost of its pages, and pages
+// that nobody touches cost nothing. A moved block is empty. Throws std::bad_alloc when the host has no
+// memory.
 class HostBlock {
  public:
   static constexpr uint64_t kAlignment = 64;
 
   HostBlock() = default;
   // The host's bytes are whole cache lines, so that a line can be copied even where only a part is used.
-  explicit HostBlock(uint64_t bytes)
-      : memory_(std::calloc(1, size_t((bytes / kAlignment + 2) * kAlignment))), size_(bytes) {
+  explicit HostBlock(uint64_t bytes) : size_(bytes) {
+    const auto whole = size_t((bytes / kAlignment + 2) * kAlignment);
+    memory_ = bytes < kMapped ? Memory(std::calloc(1, whole)) : mapped(whole);
     if (!memory_) throw std::bad_alloc();
     const auto at = reinterpret_cast<uintptr_t>(memory_.get());
     data_ = static_cast<std::byte*>(memory_.get()) + (kAlignment - at % kAlignment) % kAlignment;
@@ -42,10 +56,15 @@ class HostBlock {
   uint64_t size() const { return size_; }  // bytes
 
  private:
-  struct Free {
-    void operator()(void* memory) const { std::free(memory); }
-  };
-  std::unique_ptr<void, Free> memory_;
+  // std::calloc writes zeros into memory that was in use before, which large blocks would pay for all bytes.
+  static constexpr uint64_t kMapped = 1 << 20;  // bytes from which a block has pages of its own
+  using Memory = std::unique_ptr<void, FreeHostMemory>;
+  static Memory mapped(size_t bytes) {
+    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return memory == MAP_FAILED ? Memory() : Memory(memory, FreeHostMemory{bytes});
+  }
+
+  Memory memory_;
   std::byte* data_ = nullptr;
   uint64_t size_ = 0;
 };

@@ -81,7 +81,7 @@ class BlocksAhead {
         threads_(threads),
         num_blocks_(exec::num_blocks(world)),
         endless_(*world.image),
-        uses_(exec::uses_of(*world.memory)),
+        uses_(*world.memory),
         written_(uses_.size()) {
     std::vector<Cell*> cells;
     for (uint32_t t = 0; t < threads; ++t) {
@@ -262,7 +262,7 @@ class BlocksAhead {
   const uint32_t threads_, num_blocks_;
   const exec::EndlessLoops endless_;
   const std::thread::id caller_ = std::this_thread::get_id();
-  std::vector<exec::AllocationUse> uses_;
+  exec::MemoryUses uses_;
   exec::WrittenBytes written_;  // by the blocks of the window that have had their turn
   FunctionalCounts counts_;
   uint32_t next_ = 0;  // the block whose turn is next

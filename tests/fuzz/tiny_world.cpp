@@ -70,11 +70,10 @@ struct Scene {
     top = rt::build_top(memory, "top", instances, bottoms);
     buffer = memory.allocate("buffer", kBufferBytes);
     binding_table = memory.allocate("binding table", 32 * 4);
-    for (const auto& allocation : memory.allocations())
-      pristine.emplace_back(allocation.data, allocation.data + allocation.bytes);
+    for (const auto& slot : memory.slots()) pristine.emplace_back(slot.data, slot.data + slot.bytes);
   }
   void restore() {
-    const auto& all = memory.allocations();
+    const auto all = memory.slots();
     for (size_t i = 0; i < all.size(); ++i)
       if (!pristine[i].empty()) std::memcpy(all[i].data, pristine[i].data(), pristine[i].size());
   }

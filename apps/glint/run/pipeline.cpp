@@ -103,9 +103,8 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   info.scene = world.description().name;
   info.scene_form = "pipeline";
   std::string everything;  // everything that the launch begins with
-  for (const auto& allocation : world.memory().allocations())
-    if (allocation.data)
-      everything.append(reinterpret_cast<const char*>(allocation.data), size_t(allocation.bytes));
+  for (const mem::AddressSpace::Slot& slot : world.memory().slots())
+    if (slot.data) everything.append(reinterpret_cast<const char*>(slot.data), size_t(slot.bytes));
   info.scene_hash = report::fnv1a(everything);
   for (const pipeline::ShaderModule& module : world.modules().all())
     info.shader += (info.shader.empty() ? "" : " ") + module.name;

@@ -16,10 +16,9 @@ using isa::Effect;
 struct Lab {
   mem::AddressSpace memory;
   Address buffer = memory.allocate("buffer", 256), other = memory.allocate("other", 64);
-  std::vector<AllocationUse> uses;
+  MemoryUses uses{memory};
   Lab() {
     for (int i = 0; i < 256; ++i) byte(i) = std::byte(i);
-    uses = uses_of(memory);
   }
   std::byte& byte(uint32_t i) { return *memory.find(buffer + i, 1); }
   WrittenBytes nothing() const { return WrittenBytes(uses.size()); }
@@ -54,8 +53,8 @@ TEST_CASE(
   Lab lab;
   for (const bool known : {false, true}) {
     INFO("known to be written: " << known);
-    lab.uses = uses_of(lab.memory);
-    if (known) lab.uses[size_t(lab.buffer >> mem::AddressSpace::kShift)] = AllocationUse::Written;
+    lab.uses = MemoryUses(lab.memory);
+    if (known) lab.uses[lab.uses.number_of(lab.buffer)] = AllocationUse::Written;
     WrittenBytes written = lab.nothing();
     BlockMemory writer(lab.uses), same(lab.uses), beside(lab.uses), elsewhere(lab.uses), atomic(lab.uses);
     lab.store(writer, 40, 4, 1);
@@ -90,7 +89,7 @@ TEST_CASE("stores into structures and samples of written images cannot be follow
   const uint32_t magic = rt::StructureHeader::kMagic;
   const Address structure = lab.memory.allocate("structure", 256);
   lab.memory.write(structure, &magic, sizeof magic);
-  lab.uses = uses_of(lab.memory);
+  lab.uses = MemoryUses(lab.memory);
   BlockMemory block(lab.uses), reader(lab.uses);
   block.read_as_it_is(structure);
   block.read_as_it_is(lab.buffer);
@@ -100,6 +99,30 @@ TEST_CASE("stores into structures and samples of written images cannot be follow
   CHECK(reader.is_unsuited());
   block.place(structure + 64, lab.memory.find(structure + 64, 4), 4, Effect::Store);
   CHECK(block.is_unsuited());
+}
+
+TEST_CASE("a block has read what was written through another window on the same bytes") {
+  Lab lab;
+  const mem::Backing backing = lab.memory.add_backing(256);
+  const Address low = lab.memory.open_window("low", backing, 0, 96),
+                high = lab.memory.open_window("high", backing, 96, 32),  // It begins in low's last line.
+      far = lab.memory.open_window("far", backing, 128, 128);
+  lab.uses = MemoryUses(lab.memory);
+  CHECK(lab.uses.number_of(low) == lab.uses.number_of(high));
+  CHECK(lab.uses.number_of(low) != lab.uses.number_of(far));
+  CHECK(lab.uses.number_of(far) != lab.uses.number_of(lab.buffer));
+  WrittenBytes written = lab.nothing();
+  BlockMemory writer(lab.uses), reader(lab.uses), beside(lab.uses);
+  const auto place = [&](BlockMemory& block, Address at, Effect effect) {
+    return block.place(at, lab.memory.find(at, 4), 4, effect);
+  };
+  std::memset(place(writer, low + 92, Effect::Store), 7, 4);
+  CHECK(int(*place(writer, low + 92, Effect::Load)) == 7);
+  place(reader, high, Effect::Load);
+  place(beside, far, Effect::Load);
+  writer.commit(written, lab.uses);
+  CHECK(reader.has_read(written));
+  CHECK_FALSE(beside.has_read(written));
 }
 
 }  // namespace
