@@ -158,7 +158,7 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
   CompiledShader out;
   Diagnostics notes;
   out.name = shader.name;
-  out.reflection = frontend::reflect(words, title);
+  out.reflection = frontend::reflect(words, title, attachment.entry);
   out.program = frontend::compile_module(
                     words, title, attachment.entry,
                     {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call,

@@ -89,6 +89,10 @@ void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t,
   world.dynamic_shared_bytes = dynamic_bytes;
 }
 
+void set_first_block(World& world, std::array<uint32_t, 3> first) {
+  for (size_t axis = 0; axis < 3; ++axis) world.first_id[axis] = first[axis] * world.block_size[axis];
+}
+
 uint64_t plain_table_bytes(const World& world) {
   return (1 + world.miss.size() + world.hit.size() + world.callable.size()) * uint64_t(kHandleBytes);
 }

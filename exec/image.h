@@ -122,8 +122,9 @@ struct World {
   std::vector<uint32_t> callable;
   BindingTable table;
   std::array<uint32_t, 3> launch_size{1, 1, 1};  // number of threads
-  // A launch without blocks may be a window of a larger one: what shaders read as their id begins at
-  // `first_id`, and they read `whole_size` as the launch's size. With zeros the launch is whole.
+  // The launch may be a window of a larger one: what shaders read as their id begins at `first_id`, which is
+  // a multiple of `block_size`. Without blocks they read `whole_size` as the launch's size. With zeros the
+  // launch is whole.
   std::array<uint32_t, 3> first_id{0, 0, 0}, whole_size{0, 0, 0};
   // These are the threads of a block (at most kMaxBlockThreads); `launch_size` is then a multiple of it in
   // each direction. With zeros the launch has no blocks, and each warp is a block of its own (ray
@@ -150,5 +151,7 @@ void place_plain_table(World& world, Address base);
 // Sets sizes and shared memory for a grid of blocks of threads. `dynamic_bytes` come after the program's own.
 void set_blocks(World& world, std::array<uint32_t, 3> grid, std::array<uint32_t, 3> block,
                 uint32_t static_bytes, uint32_t dynamic_bytes = 0);
+// Lets the numbers of blocks begin at `first`, as vkCmdDispatchBase does. It is called after set_blocks().
+void set_first_block(World& world, std::array<uint32_t, 3> first);
 
 }  // namespace glint::exec

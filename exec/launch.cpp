@@ -75,6 +75,8 @@ void fill_launch_specials(const World& world, WarpContext& warp, const Seat& sea
       blocks ? world.block_size : std::array<uint32_t, 3>{uint32_t(kLanes), 1, 1};
   const std::array<uint32_t, 3> grid =
       blocks ? grid_size(world) : std::array<uint32_t, 3>{num_blocks(world), 1, 1};
+  std::array<uint32_t, 3> block_number = warp.block->id();
+  for (size_t axis = 0; blocks && axis < 3; ++axis) block_number[axis] += world.first_id[axis] / size[axis];
   const std::array<uint32_t, 3>& whole = world.whole_size[0] ? world.whole_size : world.launch_size;
   const auto set = [&](Special s, size_t lane, uint32_t value) {
     warp.regs.bank[2][size_t(s) * kLanes + lane] = value;
@@ -88,7 +90,7 @@ void fill_launch_specials(const World& world, WarpContext& warp, const Seat& sea
       set(axis_of(Special::LaunchSizeX, axis), lane, whole[axis]);
       set(axis_of(Special::TidX, axis), lane, thread[axis]);
       set(axis_of(Special::NtidX, axis), lane, size[axis]);
-      set(axis_of(Special::CtaidX, axis), lane, warp.block->id()[axis]);
+      set(axis_of(Special::CtaidX, axis), lane, block_number[axis]);
       set(axis_of(Special::NctaidX, axis), lane, grid[axis]);
     }
     const LaneMask bit = LaneMask{1} << lane;

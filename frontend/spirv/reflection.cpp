@@ -3,7 +3,10 @@
 #include "frontend/spirv/reflection.h"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "frontend/compile.h"
@@ -147,17 +150,49 @@ std::string scalars_of(Layout& layout, Id type) {
   return out;
 }
 
+// Returns the variables that an entry point's function and the functions that it calls name.
+std::set<Id> variables_used_by(const Module& module, const EntryPoint& entry) {
+  // Since SPIR-V 1.4 the entry point lists them.
+  if (module.version >= 0x10400) return entry.interface;
+  std::set<Id> used, known{entry.function};
+  std::vector<Id> open{entry.function};
+  while (!open.empty()) {
+    const Function* const function = module.function(open.back());
+    open.pop_back();
+    if (!function) continue;
+    for (const Block& block : function->blocks)
+      for (const Instruction& inst : block.code) {
+        if (inst.op == spv::Op::OpFunctionCall && known.insert(inst.operands[0]).second)
+          open.push_back(inst.operands[0]);
+        // A literal may equal the number of a variable, which then counts as used.
+        for (const uint32_t operand : inst.operands)
+          if (module.variables.contains(operand)) used.insert(operand);
+      }
+  }
+  return used;
+}
+
+// Returns the variables that belong to an entry point. Unused ones belong to it if it is alone.
+std::set<Id> variables_of(const Module& module, const EntryPoint& entry) {
+  if (module.entry_points.size() > 1) return variables_used_by(module, entry);
+  std::set<Id> all;
+  for (const auto& [id, variable] : module.variables) all.insert(id);
+  return all;
+}
+
 }  // namespace
 
-Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name) {
+Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name,
+                   const std::string& entry_point) {
   const Module module = Module::parse(spirv, name);
   Layout layout(module);
   Reflection result;
-  if (module.entry_points.empty()) throw UserError({name, 0, 0}, "the module has no entry point");
-  result.stage = stage_of(module.entry_points[0].model).value_or(isa::Stage::Compute);
-  result.entry_point = module.entry_points[0].name;
-  result.local_size = module.entry_points[0].local_size;
-  for (const auto& [id, variable] : module.variables) {
+  const EntryPoint& entry = module.entry_point(entry_point, name);
+  result.stage = stage_of(entry.model).value_or(isa::Stage::Compute);
+  result.entry_point = entry.name;
+  result.local_size = entry.local_size;
+  for (const Id id : variables_of(module, entry)) {
+    const Variable& variable = module.variables.at(id);
     const uint32_t bytes = layout.size(module.type(variable.type).element);
     switch (variable.storage) {
       case Storage::IncomingRayPayloadKHR:

@@ -57,7 +57,9 @@ struct Reflection {
 };
 
 // Reflects one module before or after simplification. Before it, names and unused bindings are still present.
-// Throws UserError when the words are malformed or have no entry point.
-Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name);
+// Of a module with several entry points it reflects what `entry_point` uses; an empty name means the only
+// one, or "main". Throws UserError when the words are malformed or have no such entry point.
+Reflection reflect(const std::vector<uint32_t>& spirv, const std::string& name,
+                   const std::string& entry_point = {});
 
 }  // namespace glint::frontend

@@ -126,7 +126,7 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
     }
   errors.throw_if_errors();
   words = frontend::specialize(std::move(words), values);
-  module.reflection = frontend::reflect(words, file.path);
+  module.reflection = frontend::reflect(words, file.path, file.entry);
   const auto validity = !is_binary(file.path) && values.empty() ? frontend::Validity::Known  // by glslang
                                                                 : frontend::Validity::Unknown;
   frontend::CompiledModule compiled;
@@ -138,7 +138,7 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
         {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call,
          compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces},
         notes, file.glsl.cache, validity);
-  simplified_.push_back(frontend::reflect(compiled.simplified, file.path));
+  simplified_.push_back(frontend::reflect(compiled.simplified, file.path, file.entry));
   module.reflection.local_size = simplified_.back().local_size;
   module.program = std::move(compiled.program);
   warnings.insert(warnings.end(), notes.messages().begin(), notes.messages().end());

@@ -266,4 +266,27 @@ TEST_CASE("shared memory ends where the block's ends") {
       "reads 4 bytes at shared address 0x40: 0 bytes past the end of the block's shared memory (64 bytes)"));
 }
 
+TEST_CASE("the numbers of blocks and threads begin where the launch says, and those within a block at 0") {
+  TextLaunch launch(R"(
+    ld.param.b64 %rd12, [0];
+    mov.b32 %r4, %ctaid.x;
+    sub.u32 %r5, %r4, 5;
+    mad.wide.u32 %rd12, %r5, 16, %rd12;
+    st.global.b32 [%rd12], %r4;
+    mov.b32 %r6, %ctaid.y;
+    st.global.b32 [%rd12+4], %r6;
+    mov.b32 %r7, %launch.x;
+    mov.b32 %r8, %tid.x;
+    sub.u32 %r7, %r7, %r8;
+    st.global.b32 [%rd12+8], %r7;
+    mov.b32 %r9, %nctaid.x;
+    st.global.b32 [%rd12+12], %r9;
+    exit;
+)",
+                    {.grid = {2, 1, 1}, .block = {32, 1, 1}});
+  set_first_block(launch.world, {5, 7, 0});
+  launch.run();
+  CHECK(launch.words(0, 8) == std::vector<uint32_t>{5, 7, 160, 2, 6, 7, 192, 2});
+}
+
 }  // namespace glint::exec
