@@ -1,0 +1,10 @@
+# Adds the tests of the Vulkan driver. Those that need a package which is not installed say so and skip.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME vulkan_entry_table COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/entry_table_test.py ${PROJECT_SOURCE_DIR})
+if(TARGET glint_vulkan)
+  set(manifest ${PROJECT_BINARY_DIR}/glint_icd.json)
+  foreach(name vulkaninfo)
+    add_test(NAME vulkan_${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/${name}_test.py ${manifest} ${PROJECT_SOURCE_DIR})
+    set_tests_properties(vulkan_${name} PROPERTIES SKIP_RETURN_CODE 77)
+  endforeach()
+endif()

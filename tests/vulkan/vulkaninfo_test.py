@@ -1,0 +1,27 @@
+# Tests that the program vulkaninfo finds the device and hears an answer to all that it asks.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: vulkaninfo_test.py MANIFEST SOURCE_DIR"""
+import json
+
+import vulkan_case
+from vulkan_case import MANIFEST, VulkanTest
+
+
+class VulkanInfo(VulkanTest):
+    def test_it_ends_well_and_names_no_command_that_is_missing(self):
+        result = self.run_on_glint("vulkaninfo")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("is not there", result.stderr)
+        self.assertIn("deviceName        = Glint mobile (simulated)", result.stdout)
+        self.assertIn("QUEUE_COMPUTE | QUEUE_TRANSFER", result.stdout)
+
+    def test_the_library_shows_the_loader_s_functions_and_no_others(self):
+        library = json.loads(MANIFEST.read_text())["ICD"]["library_path"]
+        listed = self.run_on_glint("nm", "-D", "--defined-only", library)
+        names = [line.split()[-1] for line in listed.stdout.splitlines()]
+        self.assertEqual(sorted(names), ["vk_icdGetInstanceProcAddr", "vk_icdGetPhysicalDeviceProcAddr",
+                                         "vk_icdNegotiateLoaderICDInterfaceVersion"])
+
+
+vulkan_case.need("vulkaninfo", "vulkan-tools")
+vulkan_case.main()

@@ -1,0 +1,57 @@
+// Makes and ends devices.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/device.h"
+
+#include <fmt/format.h>
+#include <memory>
+
+#include "vulkan/chain.h"
+
+namespace glint::vulkan {
+namespace {
+
+// Notes the features that a structure asks for. Throws Refusal when the device does not have one.
+void ask_for(Device& device, VkStructureType type, const void* members) {
+  auto* asked = static_cast<const VkBool32*>(members);
+  for (const Feature& each : features_of(type)) {
+    if (!*asked++) continue;
+    if (!each.announced)
+      throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, fmt::format("the device has no feature {}", each.name));
+    device.features.insert(each.name);
+  }
+}
+
+}  // namespace
+
+VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, VkDevice* out) {
+  for (uint32_t i = 0; i < info->enabledExtensionCount; ++i)
+    if (!is_announced(device_extensions(), info->ppEnabledExtensionNames[i]))
+      throw Refusal(VK_ERROR_EXTENSION_NOT_PRESENT,
+                    fmt::format("there is no device extension {}", info->ppEnabledExtensionNames[i]));
+  auto made = std::make_unique<Device>(physical);
+  if (info->pEnabledFeatures)
+    ask_for(*made, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, info->pEnabledFeatures);
+  for (auto* each = static_cast<const VkBaseInStructure*>(info->pNext); each; each = each->pNext)
+    ask_for(*made, each->sType, each + 1);
+  *out = made.release();
+  return VK_SUCCESS;
+}
+
+void DestroyDevice(Device& device) {
+  delete &device;
+}
+
+void GetDeviceQueue(Device& device, uint32_t, uint32_t, VkQueue* out) {
+  *out = &device.queue;
+}
+
+void GetDeviceQueue2(Device& device, const VkDeviceQueueInfo2*, VkQueue* out) {
+  *out = &device.queue;
+}
+
+void GetDeviceGroupPeerMemoryFeatures(Device&, uint32_t, uint32_t, uint32_t, VkPeerMemoryFeatureFlags* out) {
+  *out = VK_PEER_MEMORY_FEATURE_COPY_SRC_BIT | VK_PEER_MEMORY_FEATURE_COPY_DST_BIT |
+         VK_PEER_MEMORY_FEATURE_GENERIC_SRC_BIT | VK_PEER_MEMORY_FEATURE_GENERIC_DST_BIT;
+}
+
+}  // namespace glint::vulkan

@@ -1,0 +1,84 @@
+// Stands between the application and the driver's functions: no exception leaves, and one thread at a time
+// uses a device.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/guard.h"
+
+#include <exception>
+#include <fmt/format.h>
+#include <new>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "vulkan/device.h"
+
+namespace glint::vulkan {
+namespace {
+
+VkResult result_of(const Error& error) {
+  switch (error.exit()) {
+    case Exit::Unsupported:
+      return VK_ERROR_FEATURE_NOT_PRESENT;
+    case Exit::Fault:
+    case Exit::Stuck:
+      return VK_ERROR_DEVICE_LOST;
+    case Exit::Ok:
+    case Exit::Failure:
+    case Exit::UserInput:
+      break;
+  }
+  return VK_ERROR_UNKNOWN;
+}
+
+// Returns the result of the exception that is being handled, and says its text.
+VkResult explain(const char* command, const Messages* messages) {
+  VkResult result = VK_ERROR_UNKNOWN;
+  std::string why;
+  try {
+    throw;
+  } catch (const Refusal& refusal) {
+    result = refusal.result(), why = refusal.what();
+  } catch (const Error& error) {
+    result = result_of(error), why = error.what();
+  } catch (const std::bad_alloc&) {
+    result = VK_ERROR_OUT_OF_HOST_MEMORY, why = "the host has no more memory";
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  const std::string text = fmt::format("{}: {}", command, why);
+  messages ? messages->error(text) : write_to_stderr(text);
+  return result;
+}
+
+}  // namespace
+
+VkResult caught(const char* command, std::nullptr_t) {
+  return explain(command, nullptr);
+}
+VkResult caught(const char* command, Instance* instance) {
+  return explain(command, &instance->messages);
+}
+VkResult caught(const char* command, PhysicalDevice* device) {
+  return explain(command, &device->instance.messages);
+}
+VkResult caught(const char* command, Device* device) {
+  return explain(command, &device->messages());
+}
+VkResult caught(const char* command, Queue* queue) {
+  return explain(command, &queue->device.messages());
+}
+VkResult caught(const char* command, CommandBuffer*) {
+  return explain(command, nullptr);
+}
+
+std::unique_lock<std::mutex> lock_of(Device* device) {
+  return std::unique_lock(device->mutex);
+}
+std::unique_lock<std::mutex> lock_of(Queue* queue) {
+  return std::unique_lock(queue->device.mutex);
+}
+
+void say_not_written(const char* command) {
+  write_to_stderr(fmt::format("{} is not there: the device does compute and transfer only", command));
+}
+
+}  // namespace glint::vulkan

@@ -1,0 +1,41 @@
+// Holds an instance and the one physical device that it has.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "pipeline/params.h"
+#include "vulkan/announced.h"
+#include "vulkan/messages.h"
+
+// Is the simulated GPU as applications see it before they make a device.
+struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
+  explicit VkPhysicalDevice_T(VkInstance_T& of);
+
+  VkInstance_T& instance;
+  glint::pipeline::GpuParams gpu;
+  std::string preset = "mobile";
+  VkPhysicalDeviceProperties core{};           // with the limits
+  glint::vulkan::DeviceProperties properties;  // all others
+};
+
+struct VkInstance_T : glint::vulkan::Dispatchable {
+  glint::vulkan::Messages messages;
+  VkDebugUtilsMessengerEXT_T first_messenger;  // of VkInstanceCreateInfo
+  VkPhysicalDevice_T physical{*this};
+};
+
+namespace glint::vulkan {
+
+// Choice: a simulated device has no memory of its own, and the host gives pages when they are first touched.
+inline constexpr VkDeviceSize kHeapBytes = VkDeviceSize{16} << 30;
+// An address names its allocation in the upper 32 bits (memsys/address_space.h).
+inline constexpr VkDeviceSize kMaxAllocationBytes = VkDeviceSize{1} << 32;
+inline constexpr uint32_t kMaxPushConstantBytes = 256;
+inline constexpr VkDeviceSize kHostPointerAlignment = 4096;
+
+// Says what the device can do with formats, sizes and numbers.
+VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu);
+DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset);
+
+}  // namespace glint::vulkan

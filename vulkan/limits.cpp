@@ -1,0 +1,181 @@
+// Says the limits and the properties of the device: what the simulated GPU has, and what Vulkan asks for at
+// least where nothing depends on the GPU.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "exec/block.h"
+#include "isa/descriptors.h"
+#include "vulkan/instance.h"
+
+namespace glint::vulkan {
+namespace {
+
+// A set has kMaxBindings bindings, each of which may be an array.
+constexpr uint32_t kManyDescriptors = 1 << 20;
+constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT;
+// Choice: launches have threads of 32-bit numbers, so a whole axis of the largest blocks fits.
+constexpr uint32_t kMaxGroups = (1u << 22) - 1;
+
+void set_image_limits(VkPhysicalDeviceLimits& l) {
+  l.maxImageDimension1D = l.maxImageDimension2D = l.maxImageDimensionCube = 16384;
+  l.maxImageDimension3D = 2048;
+  l.maxImageArrayLayers = 2048;
+  l.maxTexelBufferElements = 1u << 27;
+  l.maxSamplerAllocationCount = 4000;
+  l.maxSamplerLodBias = 16.0f, l.maxSamplerAnisotropy = 1.0f;
+  l.subPixelPrecisionBits = l.subTexelPrecisionBits = l.mipmapPrecisionBits = 8;
+  l.minTexelOffset = l.minTexelGatherOffset = -32;
+  l.maxTexelOffset = l.maxTexelGatherOffset = 31;
+  l.sampledImageColorSampleCounts = l.sampledImageIntegerSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.sampledImageDepthSampleCounts = l.sampledImageStencilSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.maxSampleMaskWords = 1;
+}
+
+void set_descriptor_limits(VkPhysicalDeviceLimits& l) {
+  l.maxBoundDescriptorSets = isa::kMaxSets;
+  for (uint32_t* limit :
+       {&l.maxPerStageDescriptorSamplers, &l.maxPerStageDescriptorUniformBuffers,
+        &l.maxPerStageDescriptorStorageBuffers, &l.maxPerStageDescriptorSampledImages,
+        &l.maxPerStageDescriptorStorageImages, &l.maxPerStageResources, &l.maxDescriptorSetSamplers,
+        &l.maxDescriptorSetUniformBuffers, &l.maxDescriptorSetStorageBuffers,
+        &l.maxDescriptorSetSampledImages, &l.maxDescriptorSetStorageImages})
+    *limit = kManyDescriptors;
+  l.maxDescriptorSetUniformBuffersDynamic = l.maxDescriptorSetStorageBuffersDynamic = 64;
+}
+
+void set_memory_limits(VkPhysicalDeviceLimits& l) {
+  l.maxUniformBufferRange = l.maxStorageBufferRange = 0xffff'ffff;
+  l.maxPushConstantsSize = kMaxPushConstantBytes;
+  l.maxMemoryAllocationCount = 16384;
+  l.bufferImageGranularity = 1;
+  l.minMemoryMapAlignment = 64;
+  l.minTexelBufferOffsetAlignment = 16;
+  l.minUniformBufferOffsetAlignment = l.minStorageBufferOffsetAlignment = 16;
+  l.optimalBufferCopyOffsetAlignment = l.optimalBufferCopyRowPitchAlignment = 1;
+  l.nonCoherentAtomSize = 64;
+}
+
+// Sets what only graphics queues use to the least that Vulkan allows. Clients such as vulkaninfo show it.
+void set_graphics_limits(VkPhysicalDeviceLimits& l) {
+  l.maxFramebufferWidth = l.maxFramebufferHeight = 4096;
+  l.maxFramebufferLayers = 256;
+  l.maxColorAttachments = l.maxFragmentOutputAttachments = 4;
+  l.maxPerStageDescriptorInputAttachments = l.maxDescriptorSetInputAttachments = 4;
+  l.framebufferColorSampleCounts = l.framebufferDepthSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.framebufferStencilSampleCounts = l.framebufferNoAttachmentsSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.maxViewports = 1;
+  l.maxViewportDimensions[0] = l.maxViewportDimensions[1] = 4096;
+  l.viewportBoundsRange[0] = -8192, l.viewportBoundsRange[1] = 8191;
+  l.maxVertexInputAttributes = l.maxVertexInputBindings = 16;
+  l.maxVertexInputAttributeOffset = 2047, l.maxVertexInputBindingStride = 2048;
+  l.maxVertexOutputComponents = l.maxFragmentInputComponents = 64;
+  l.maxFragmentCombinedOutputResources = 4;
+  l.maxDrawIndexedIndexValue = (1u << 24) - 1, l.maxDrawIndirectCount = 1;
+  l.pointSizeRange[0] = l.pointSizeRange[1] = l.lineWidthRange[0] = l.lineWidthRange[1] = 1.0f;
+  l.discreteQueuePriorities = 2;
+}
+
+template <size_t N>
+void set_text(char (&to)[N], const std::string& text) {
+  std::strncpy(to, text.c_str(), N - 1);
+}
+
+void set_subgroups(DeviceProperties& p) {
+  p.subgroupSize = p.minSubgroupSize = p.maxSubgroupSize = uint32_t(kLanes);
+  p.maxComputeWorkgroupSubgroups = exec::kMaxBlockWarps;
+  p.supportedStages = p.subgroupSupportedStages = p.requiredSubgroupSizeStages = kStages;
+  p.supportedOperations = p.subgroupSupportedOperations =
+      VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT |
+      VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT |
+      VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT | VK_SUBGROUP_FEATURE_CLUSTERED_BIT |
+      VK_SUBGROUP_FEATURE_QUAD_BIT;
+  p.quadOperationsInAllStages = p.subgroupQuadOperationsInAllStages = VK_TRUE;
+}
+
+// Floats keep denormals, signed zeros, infinities and NaN, and round to nearest even.
+void set_floats(DeviceProperties& p) {
+  p.denormBehaviorIndependence = p.roundingModeIndependence = VK_SHADER_FLOAT_CONTROLS_INDEPENDENCE_ALL;
+  p.shaderSignedZeroInfNanPreserveFloat16 = p.shaderSignedZeroInfNanPreserveFloat32 = VK_TRUE;
+  p.shaderSignedZeroInfNanPreserveFloat64 = VK_TRUE;
+  p.shaderDenormPreserveFloat16 = p.shaderDenormPreserveFloat32 = p.shaderDenormPreserveFloat64 = VK_TRUE;
+  p.shaderRoundingModeRTEFloat16 = p.shaderRoundingModeRTEFloat32 = p.shaderRoundingModeRTEFloat64 = VK_TRUE;
+}
+
+void set_descriptor_indexing(DeviceProperties& p) {
+  p.maxUpdateAfterBindDescriptorsInAllPools = p.maxPerSetDescriptors = kManyDescriptors;
+  p.shaderUniformBufferArrayNonUniformIndexingNative = VK_TRUE;
+  p.shaderSampledImageArrayNonUniformIndexingNative = VK_TRUE;
+  p.shaderStorageBufferArrayNonUniformIndexingNative = VK_TRUE;
+  p.shaderStorageImageArrayNonUniformIndexingNative = VK_TRUE;
+  p.robustBufferAccessUpdateAfterBind = p.quadDivergentImplicitLod = VK_TRUE;
+  for (uint32_t* limit :
+       {&p.maxPerStageDescriptorUpdateAfterBindSamplers,
+        &p.maxPerStageDescriptorUpdateAfterBindUniformBuffers,
+        &p.maxPerStageDescriptorUpdateAfterBindStorageBuffers,
+        &p.maxPerStageDescriptorUpdateAfterBindSampledImages,
+        &p.maxPerStageDescriptorUpdateAfterBindStorageImages, &p.maxPerStageUpdateAfterBindResources,
+        &p.maxDescriptorSetUpdateAfterBindSamplers, &p.maxDescriptorSetUpdateAfterBindUniformBuffers,
+        &p.maxDescriptorSetUpdateAfterBindStorageBuffers, &p.maxDescriptorSetUpdateAfterBindSampledImages,
+        &p.maxDescriptorSetUpdateAfterBindStorageImages})
+    *limit = kManyDescriptors;
+  p.maxDescriptorSetUpdateAfterBindUniformBuffersDynamic = 64;
+  p.maxDescriptorSetUpdateAfterBindStorageBuffersDynamic = 64;
+  p.maxPerStageDescriptorUpdateAfterBindInputAttachments = 4;
+  p.maxDescriptorSetUpdateAfterBindInputAttachments = 4;
+  p.maxPushDescriptors = 32;
+}
+
+}  // namespace
+
+VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu) {
+  VkPhysicalDeviceLimits l{};
+  set_image_limits(l);
+  set_descriptor_limits(l);
+  set_memory_limits(l);
+  set_graphics_limits(l);
+  l.maxComputeSharedMemorySize = gpu.core.shared_bytes;
+  l.maxComputeWorkGroupInvocations = exec::kMaxBlockThreads;
+  std::fill_n(l.maxComputeWorkGroupCount, 3, kMaxGroups);
+  std::fill_n(l.maxComputeWorkGroupSize, 3, exec::kMaxBlockThreads);
+  l.timestampComputeAndGraphics = VK_TRUE;
+  l.timestampPeriod = float(1000.0 / gpu.clock_mhz);  // nanoseconds of a core cycle
+  return l;
+}
+
+DeviceProperties properties_of(const pipeline::GpuParams&, const std::string& preset) {
+  DeviceProperties p{};
+  set_text(p.driverName, "Glint");
+  set_text(p.driverInfo, fmt::format("preset {}, functional", preset));
+  set_text(reinterpret_cast<char(&)[VK_UUID_SIZE]>(p.deviceUUID), preset);
+  set_text(reinterpret_cast<char(&)[VK_UUID_SIZE]>(p.driverUUID), "glint");
+  set_subgroups(p);
+  set_floats(p);
+  set_descriptor_indexing(p);
+  p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
+  p.maxMultiviewViewCount = 6, p.maxMultiviewInstanceIndex = (1u << 27) - 1;
+  p.maxMemoryAllocationSize = p.maxBufferSize = kMaxAllocationBytes;
+  p.supportedDepthResolveModes = p.supportedStencilResolveModes = VK_RESOLVE_MODE_SAMPLE_ZERO_BIT;
+  p.framebufferIntegerColorSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  p.maxTimelineSemaphoreValueDifference = (uint64_t{1} << 63) - 1;
+  p.storageTexelBufferOffsetAlignmentBytes = p.uniformTexelBufferOffsetAlignmentBytes = 16;
+  p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
+  p.minImportedHostPointerAlignment = kHostPointerAlignment;
+  return p;
+}
+
+}  // namespace glint::vulkan
+
+VkPhysicalDevice_T::VkPhysicalDevice_T(VkInstance_T& of)
+    : instance(of), properties(glint::vulkan::properties_of(gpu, preset)) {
+  core.apiVersion = VK_MAKE_API_VERSION(0, 1, 3, VK_HEADER_VERSION);
+  core.driverVersion = VK_MAKE_API_VERSION(0, 0, 1, 0);
+  // Choice: 0 is nobody's number, so no client tunes itself for another vendor's GPU.
+  core.vendorID = core.deviceID = 0;
+  core.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  glint::vulkan::set_text(core.deviceName, fmt::format("Glint {} (simulated)", preset));
+  glint::vulkan::set_text(reinterpret_cast<char(&)[VK_UUID_SIZE]>(core.pipelineCacheUUID), "glint");
+  core.limits = glint::vulkan::limits_of(gpu);
+}
