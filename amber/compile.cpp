@@ -11,6 +11,7 @@
 #include "frontend/spirv/limits.h"
 #include "frontend/spirv/specialize.h"
 #include "frontend/spirv/spirv.h"
+#include "pipeline/linked_shaders.h"
 
 namespace glint::amber {
 namespace {
@@ -151,20 +152,14 @@ CompiledShader compile(const Script& script, const Attachment& attachment,
                                                                 : why_invalid(words);
   if (!invalid.empty())
     throw UserError({shader.path, 0, 0}, fmt::format("shader '{}' is invalid SPIR-V\n{}", title, invalid));
-  const auto validity = attachment.constants.empty() && !attachment.is_clamped ? frontend::Validity::Known
-                                                                               : frontend::Validity::Unknown;
-  words = frontend::specialize(std::move(words), attachment.constants);
-  if (attachment.is_clamped) words = frontend::with_clamped_indices(words, title);
-  CompiledShader out;
+  const auto validity = attachment.is_clamped ? frontend::Validity::Unknown : frontend::Validity::Known;
+  if (attachment.is_clamped)
+    words =
+        frontend::with_clamped_indices(frontend::specialize(std::move(words), attachment.constants), title);
   Diagnostics notes;
-  out.name = shader.name;
-  out.reflection = frontend::reflect(words, title, attachment.entry);
-  out.program = frontend::compile_module(
-                    words, title, attachment.entry,
-                    {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call,
-                     compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces},
-                    notes, cache, validity)
-                    .program;
+  pipeline::CompiledStage stage = pipeline::compile_stage(
+      std::move(words), {title, attachment.entry, attachment.constants, validity}, compiler, notes, cache);
+  CompiledShader out{shader.name, std::move(stage.program), std::move(stage.reflection)};
   if (out.program.stage != *attachment.stage)
     throw UserError({shader.path, 0, 0}, fmt::format("entry point '{}' of shader '{}' has another stage",
                                                      attachment.entry, title));

@@ -9,14 +9,8 @@
 #include <span>
 
 #include "amber/declared_binding.h"
-#include "exec/block.h"
-#include "isa/descriptors.h"
-#include "pipeline/binding_table.h"
-#include "pipeline/description/modules.h"
-#include "pipeline/launch_size.h"
+#include "pipeline/launch_builder.h"
 #include "pipeline/render.h"
-#include "pipeline/software_traversal.h"
-#include "pipeline/unbound.h"
 
 namespace glint::amber {
 namespace {
@@ -34,6 +28,23 @@ bool declares_robust_access(const Script& script) {
   });
 }
 
+std::vector<isa::Program> programs_of(const std::vector<CompiledShader>& shaders) {
+  std::vector<isa::Program> out;
+  for (const CompiledShader& shader : shaders) out.push_back(shader.program);
+  return out;
+}
+
+std::vector<frontend::Binding> bindings_of(const std::vector<CompiledShader>& shaders) {
+  std::vector<frontend::Binding> out;
+  for (const CompiledShader& shader : shaders)
+    out.insert(out.end(), shader.reflection.bindings.begin(), shader.reflection.bindings.end());
+  return out;
+}
+
+pipeline::BindingPlace place_of(const Binding& binding) {
+  return {binding.set, binding.binding};
+}
+
 class Launch {
  public:
   Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
@@ -42,34 +53,25 @@ class Launch {
         command_(command),
         pipeline_(script.pipelines.at(command.pipeline)),
         shaders_(shaders),
+        code_(programs_of(shaders), bindings_of(shaders), options.gpu, options.cache),
+        builder_(code_, memory_),
         bvh_(options.gpu.bvh) {
-    world_.memory = &memory_;
-    world_.constant_bank.resize(isa::kConstantBankBytes);
-    world_.robust_images = world_.robust_buffers = !options.strict || declares_robust_access(script);
-    std::vector<isa::Program> programs;
-    for (const CompiledShader& shader : shaders) programs.push_back(shader.program);
-    pipeline::add_traversal(programs, options.gpu, options.cache);
-    image_ = exec::link(programs);
-    world_.image = &image_;
+    exec::World& world = builder_.world;
+    world.robust_images = world.robust_buffers = !options.strict || declares_robust_access(script);
+    world.on_fault = options.on_fault;
+    world.prints = options.prints;
     plan_parts();
     for (const Binding& binding : pipeline_.bindings) bind(binding);
-    for (const CompiledShader& shader : shaders)
-      pipeline::mark_unbound(world_, shader.reflection.bindings, bound_);
     if (pipeline_.is_ray_tracing)
       set_ray_tracing();
     else
       set_compute();
-    pipeline::place_records(world_, stack_need_);
+    builder_.finish(stack_need_);
   }
 
   Launched run(const LaunchOptions& options) {
-    world_.on_fault = options.on_fault;
-    world_.prints = options.prints;
-    world_.nearest_first_hit = options.gpu.rt.nearest_first_hit;
-    world_.any_hit = options.gpu.rt.any_hit.make({});
-    world_.layout = options.gpu.core.layout.make({});
-    const pipeline::RenderResult result =
-        pipeline::run_world(world_, options.gpu, options.timing, options.no_skip, options.threads, {});
+    const pipeline::RenderResult result = pipeline::run_world(builder_.world, options.gpu, options.timing,
+                                                              options.no_skip, options.threads, {});
     for (const auto& [name, parts] : parts_)
       for (const Part& part : parts)
         if (part.address && part.end > part.first) {
@@ -94,8 +96,6 @@ class Launch {
   void bind_samplers(const Binding& binding);
   void bind_structures(const Binding& binding);
   void set_push_constants(const Binding& binding);
-  void write_descriptor(const Binding& binding, uint64_t first, uint64_t second);
-  void write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all);
   exec::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
   void plan_parts();
   Address upload(const Buffer& buffer, uint64_t offset);
@@ -109,12 +109,11 @@ class Launch {
   const Command& command_;
   const Pipeline& pipeline_;
   const std::vector<CompiledShader>& shaders_;
-  const rt::BuildOptions& bvh_;
-  uint32_t stack_need_ = 0;  // bytes for the deepest structure
   mem::AddressSpace memory_;
-  exec::Image image_;
-  exec::World world_;
-  std::set<pipeline::BindingPlace> bound_;
+  const pipeline::LinkedShaders code_;
+  pipeline::LaunchBuilder builder_;
+  const rt::BuildOptions& bvh_;
+  uint32_t stack_need_ = 0;                         // entries for the deepest structure
   std::map<std::string, std::vector<Part>> parts_;  // of buffers that something binds
   std::map<std::string, Address> structures_;       // of top levels
 };
@@ -122,16 +121,7 @@ class Launch {
 void Launch::set_compute() {
   if (shaders_.empty())
     throw UserError(pipeline_.where, fmt::format("pipeline '{}' has no shader", pipeline_.name));
-  const isa::Program& program = shaders_[0].program;
-  const auto& size = program.local_size;
-  if (uint64_t{size[0]} * size[1] * size[2] > exec::kMaxBlockThreads)
-    throw UserError(pipeline_.where,
-                    fmt::format("blocks of {} x {} x {} threads are too large: the limit is {}", size[0],
-                                size[1], size[2], exec::kMaxBlockThreads));
-  world_.raygen = 0;
-  world_.local_bytes = pipeline::stack_bytes(image_, 1, 0);
-  pipeline::check_launch_size(command_.size, size, command_.where);
-  exec::set_blocks(world_, command_.size, size, program.shared_bytes);
+  builder_.set_blocks(0, command_.size, command_.where);
 }
 
 pipeline::TableRecord Launch::record(const std::string& group, pipeline::TableInput& input) {
@@ -172,8 +162,6 @@ pipeline::TableRegion Launch::region(const std::string& table, pipeline::TableIn
 }
 
 void Launch::set_ray_tracing() {
-  pipeline::check_launch_size(command_.size, {1, 1, 1}, command_.where);
-  world_.launch_size = command_.size;
   pipeline::TableInput input;
   const std::vector<pipeline::TableRecord> raygen = records(command_.raygen, input);
   if (raygen.empty()) throw UserError(command_.where, "the RAYGEN table is empty");
@@ -181,10 +169,8 @@ void Launch::set_ray_tracing() {
   input.miss = region(command_.miss, input);
   input.hit = region(command_.hit, input);
   input.callable = region(command_.callable, input);
-  world_.max_trace_depth = pipeline_.max_trace_depth;
-  world_.max_callable_depth = kCallableDepth;
-  world_.local_bytes = pipeline::stack_bytes(image_, world_.max_trace_depth, world_.max_callable_depth);
-  pipeline::build_binding_table(world_, memory_, input);
+  builder_.set_rays(command_.size, pipeline_.max_trace_depth, kCallableDepth, command_.where);
+  builder_.set_records(input);
 }
 
 void Launch::bind(const Binding& binding) {
@@ -202,24 +188,6 @@ void Launch::bind(const Binding& binding) {
     default:
       return bind_images(binding);
   }
-}
-
-void Launch::write_descriptor(const Binding& binding, uint64_t first, uint64_t second) {
-  bound_.insert({binding.set, binding.binding});
-  pipeline::write_descriptor(world_, {binding.set, binding.binding}, first, second);
-}
-
-// Writes the descriptors of an array of buffers or structures to a table in global memory (docs/abi.md).
-void Launch::write_descriptors(const Binding& binding, std::vector<std::array<uint64_t, 2>> all) {
-  const frontend::Binding* use = reflected(binding, shaders_);
-  if (!use || use->count == 1) return write_descriptor(binding, all[0][0], all[0][1]);
-  if (all.size() < use->count)
-    all.resize(use->count, {isa::unbound_address(binding.set, binding.binding), 0});
-  const Address table =
-      memory_.allocate(fmt::format("descriptors of set {} binding {}", binding.set, binding.binding),
-                       all.size() * isa::kDescriptorBytes);
-  memory_.write(table, all.data(), all.size() * isa::kDescriptorBytes);
-  write_descriptor(binding, table, all.size());
 }
 
 // Uploads a buffer in the parts that descriptors name, so that an access past the range of a descriptor is a
@@ -267,7 +235,7 @@ Address Launch::upload(const Buffer& buffer, uint64_t offset) {
 }
 
 void Launch::bind_buffers(const Binding& binding) {
-  std::vector<std::array<uint64_t, 2>> all;
+  std::vector<pipeline::BufferRange> all;
   for (size_t i = 0; i < binding.names.size(); ++i) {
     const Buffer& buffer = script_.buffers.at(binding.names[i]);
     const uint64_t offset = i < binding.offsets.size() ? binding.offsets[i] : 0;
@@ -278,7 +246,7 @@ void Launch::bind_buffers(const Binding& binding) {
     all.push_back(
         {upload(buffer, offset), i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
   }
-  write_descriptors(binding, all);
+  builder_.bind_buffers(place_of(binding), all);
 }
 
 exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, size_t element) {
@@ -314,18 +282,17 @@ exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
   return view;
 }
 
-// The images of an array have consecutive numbers.
 void Launch::bind_images(const Binding& binding) {
-  write_descriptor(binding, world_.images.size(), binding.names.size());
+  std::vector<exec::ImageView> all;
   for (size_t i = 0; i < binding.names.size(); ++i)
-    world_.images.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
-  pipeline::mark_rest_unbound(world_, reflected(binding, shaders_), binding.names.size());
+    all.push_back(view_of(binding, script_.buffers.at(binding.names[i]), i));
+  builder_.bind_images(place_of(binding), std::move(all));
 }
 
 void Launch::bind_samplers(const Binding& binding) {
-  write_descriptor(binding, world_.samplers.size(), binding.names.size());
-  for (const std::string& name : binding.names) world_.samplers.push_back(script_.samplers.at(name));
-  pipeline::mark_rest_unbound(world_, reflected(binding, shaders_), binding.names.size());
+  std::vector<exec::Sampler> all;
+  for (const std::string& name : binding.names) all.push_back(script_.samplers.at(name));
+  builder_.bind_samplers(place_of(binding), std::move(all));
 }
 
 rt::StructureInfo Launch::build_bottom(const std::string& name) {
@@ -357,19 +324,14 @@ Address Launch::build(const std::string& top_level) {
 }
 
 void Launch::bind_structures(const Binding& binding) {
-  std::vector<std::array<uint64_t, 2>> all;
+  std::vector<pipeline::BufferRange> all;
   for (const std::string& name : binding.names) all.push_back({build(name), 0});
-  write_descriptors(binding, all);
+  builder_.bind_buffers(place_of(binding), all);
 }
 
 void Launch::set_push_constants(const Binding& binding) {
   const Buffer& buffer = script_.buffers.at(binding.names[0]);
-  const uint64_t room = isa::kConstantBankBytes - isa::kPushConstantOffset;
-  if (buffer.bytes.size() > room)
-    throw UserError(binding.where, fmt::format("{} bytes of push constants: there is room for {}",
-                                               buffer.bytes.size(), room));
-  std::memcpy(world_.constant_bank.data() + isa::kPushConstantOffset, buffer.bytes.data(),
-              buffer.bytes.size());
+  builder_.set_push_constants(buffer.bytes, 0, binding.where);
 }
 
 }  // namespace

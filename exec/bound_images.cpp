@@ -38,14 +38,14 @@ const ImageView* BoundImages::find(const WarpContext& warp, const isa::OpRow& ro
   const uint64_t handle = warp.regs.access.address[size_t(lane)];
   const uint64_t number = handle % (1u << isa::kHandleSamplerShift),
                  sampler = handle >> isa::kHandleSamplerShift;
-  if (number >= world_.images.size() || sampler > world_.samplers.size()) [[unlikely]] {
+  if (number >= world_.num_images() || sampler > world_.num_samplers()) [[unlikely]] {
     faults_.let_pass(warp, lane, FaultKind::Image, [&] {
       return fmt::format("uses image {} with sampler {}, and {} images and {} samplers are bound", number,
-                         sampler, world_.images.size(), world_.samplers.size());
+                         sampler, world_.num_images(), world_.num_samplers());
     });
     return nullptr;
   }
-  const ImageView& image = world_.images[number];
+  const ImageView& image = world_.image_at(number);
   const bool filters = row.image.request == ImageRequest::Sample || row.image.request == ImageRequest::Gather;
   const std::string& unbound = !image.is_bound ? image.name : sampler_of(image, handle).unbound;
   if (!image.is_bound || (filters && !unbound.empty())) [[unlikely]] {
@@ -65,7 +65,7 @@ const ImageView* BoundImages::find(const WarpContext& warp, const isa::OpRow& ro
 
 const Sampler& BoundImages::sampler_of(const ImageView& image, Address handle) const {
   const uint64_t sampler = handle >> isa::kHandleSamplerShift;
-  return sampler ? world_.samplers[sampler - 1] : image.sampler;
+  return sampler ? world_.sampler_at(sampler - 1) : image.sampler;
 }
 
 }  // namespace glint::exec

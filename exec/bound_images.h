@@ -16,7 +16,7 @@ class BoundImages {
   const Sampler& sampler_of(const ImageView& image, Address handle) const;
   // Returns the format of the image of a lane's handle.
   TexelFormat format_of(const WarpContext& warp, int lane) const {
-    return world_.images[warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)].format;
+    return world_.image_at(warp.regs.access.address[size_t(lane)] % (1u << isa::kHandleSamplerShift)).format;
   }
 
  private:

@@ -102,6 +102,13 @@ struct BindingTable {
   RecordRegion miss, hit, callable;
 };
 
+// Holds images and samplers that several launches have in common, such as those of a descriptor set with
+// thousands of them. No launch changes it.
+struct ImagePool {
+  std::vector<ImageView> images;
+  std::vector<Sampler> samplers;
+};
+
 // Holds everything that a launch gives to its warps. It is not written while warps run, except for the
 // memory's contents.
 struct World {
@@ -109,8 +116,11 @@ struct World {
   mem::AddressSpace* memory = nullptr;
   PrintLog* prints = nullptr;            // where print and print.part go; null: nowhere
   std::vector<std::byte> constant_bank;  // kConstantBankBytes: descriptors and push constants (isa/program.h)
-  std::vector<ImageView> images;         // indexed by texture and image handles (isa/image_access.h)
-  std::vector<Sampler> samplers;         // samplers in addition to those of the images
+  // Texture and image handles (isa/image_access.h) number the images and samplers of `pool` first, and then
+  // the launch's own. The samplers are those in addition to the images' own.
+  const ImagePool* pool = nullptr;  // null: none
+  std::vector<ImageView> images;
+  std::vector<Sampler> samplers;
   // With these, accesses outside of buffers and images read 0 and write nothing, and are not faults, as
   // Vulkan's robustBufferAccess2 and robustImageAccess2 demand. Choice: the weaker features also allow other
   // values, and stores to other places of the same buffer; Glint has one behaviour for all of them.
@@ -141,6 +151,17 @@ struct World {
   uint32_t max_trace_depth = 1;                   // nested rt.trace (Vulkan's recursion depth)
   // This many executeCallableEXT can be nested. Choice: Vulkan only limits the stack's bytes.
   uint32_t max_callable_depth = 31;
+
+  size_t pool_images() const { return pool ? pool->images.size() : 0; }
+  size_t pool_samplers() const { return pool ? pool->samplers.size() : 0; }
+  size_t num_images() const { return pool_images() + images.size(); }
+  size_t num_samplers() const { return pool_samplers() + samplers.size(); }
+  const ImageView& image_at(size_t number) const {
+    return number < pool_images() ? pool->images[number] : images[number - pool_images()];
+  }
+  const Sampler& sampler_at(size_t number) const {
+    return number < pool_samplers() ? pool->samplers[number] : samplers[number - pool_samplers()];
+  }
 };
 
 // Return the bytes of a binding table whose records have no data, and put that table at `base`. Its order is

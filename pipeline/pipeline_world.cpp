@@ -3,18 +3,14 @@
 #include "pipeline/pipeline_world.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fmt/format.h>
 #include <span>
 #include <tuple>
 #include <utility>
 
-#include "exec/block.h"
-#include "isa/descriptors.h"
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
 #include "pipeline/description/pictures.h"
-#include "pipeline/launch_size.h"
 #include "pipeline/software_traversal.h"
 
 namespace glint::pipeline {
@@ -30,6 +26,45 @@ bool traces_from(const Modules& modules, isa::Stage stage) {
   });
 }
 
+std::vector<isa::Program> programs_of(const Modules& modules) {
+  std::vector<isa::Program> out;
+  for (const ShaderModule& module : modules.all()) out.push_back(module.program);
+  return out;
+}
+
+std::vector<frontend::Binding> bindings_of(const Modules& modules) {
+  std::vector<frontend::Binding> out;
+  for (const auto& [place, use] : modules.bindings()) out.push_back(use.binding);
+  return out;
+}
+
+// Collects the elements of bindings, which a description gives one by one.
+template <class Resource>
+struct Elements {
+  std::vector<std::pair<BindingPlace, std::vector<Resource>>> all;  // in the order of their first elements
+
+  void add(const Slot& slot, Resource resource, Resource (*none)(BindingPlace)) {
+    if (!slot.is_bound()) return;
+    const BindingPlace place{slot.set.value_or(0), *slot.binding};
+    auto at = std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.first == place; });
+    if (at == all.end()) at = all.insert(at, {place, {}});
+    if (at->second.size() <= slot.element) at->second.resize(slot.element + 1, none(place));
+    at->second[slot.element] = std::move(resource);
+  }
+};
+
+// Returns images ordered by set, binding and element, in which they lie in memory.
+std::vector<size_t> in_order(const std::vector<ImageDescription>& images) {
+  std::vector<size_t> order(images.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto key = [&](size_t i) {
+    const Slot& slot = images[i].slot;
+    return std::tuple(slot.set, slot.binding, slot.element);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
+  return order;
+}
+
 std::string title(const std::string& name, const Slot& slot) {
   return slot.is_bound() ? fmt::format("set {} binding {} ({})", slot.set.value_or(0), *slot.binding, name)
                          : name;
@@ -38,93 +73,41 @@ std::string title(const std::string& name, const Slot& slot) {
 }  // namespace
 
 PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuParams& gpu)
-    : description_(description), modules_(description_, compiler_for(gpu)) {
+    : description_(description),
+      modules_(description_, compiler_for(gpu)),
+      shaders_(programs_of(modules_), bindings_of(modules_), gpu,
+               description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache),
+      builder_(shaders_, memory_) {
   warnings = modules_.warnings;
   check_pipeline(description_, modules_, warnings);
-  world.memory = &memory_;
-  world.constant_bank.resize(isa::kConstantBankBytes);
-  world.nearest_first_hit = gpu.rt.nearest_first_hit;
-  world.any_hit = gpu.rt.any_hit.make({});
-  world.layout = gpu.core.layout.make({});
-  link(gpu);
   set_launch();
   upload_buffers();
   upload_images();
   add_samplers();
-  build_structures(gpu);
-  for (const auto& [place, use] :
-       modules_.bindings())  // bindings that no code uses; check_pipeline() refuses the others
-    if (!bound_.count(place)) mark_unbound(world, use.binding);
+  const uint32_t stack_need = build_structures(gpu);
   if (description_.raygen) fill_records();
   set_push_constants();
   errors_.throw_if_errors();
-}
-
-void PipelineWorld::link(const GpuParams& gpu) {
-  std::vector<isa::Program> programs;
-  for (const ShaderModule& module : modules_.all()) programs.push_back(module.program);
-  add_traversal(programs, gpu, description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache);
-  image_ = exec::link(programs);
-  world.image = &image_;
-  const bool nested =
-      traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
-  world.max_trace_depth = description_.max_trace_depth.value_or(nested ? kDefaultDepth : 1);
-  const bool has_callables = !description_.callable.records.empty();
-  world.max_callable_depth = description_.max_callable_depth.value_or(has_callables ? kDefaultDepth : 0);
-  world.local_bytes = stack_bytes(image_, world.max_trace_depth, world.max_callable_depth);
+  // Only bindings that no code uses are left, because check_pipeline() refuses the others.
+  builder_.finish(stack_need);
 }
 
 void PipelineWorld::set_launch() {
-  if (description_.compute.empty()) {
-    check_launch_size(description_.launch, {1, 1, 1}, SourceLocation{description_.path});
-    world.launch_size = description_.launch;
-    return;
-  }
-  world.raygen = modules_.index_of(description_.compute);
-  const isa::Program& program = modules_.find(description_.compute).program;
-  const auto& size = program.local_size;
-  if (uint64_t{size[0]} * size[1] * size[2] > exec::kMaxBlockThreads)
-    throw UserError(description_.compute_where,
-                    fmt::format("'{}' has blocks of {} x {} x {} threads, and at most {} are possible",
-                                description_.compute, size[0], size[1], size[2], exec::kMaxBlockThreads));
-  check_launch_size(description_.launch, size, description_.compute_where);
-  exec::set_blocks(world, description_.launch, size, program.shared_bytes);
+  if (!description_.compute.empty())
+    return builder_.set_blocks(modules_.index_of(description_.compute), description_.launch,
+                               description_.compute_where);
+  const bool nested =
+      traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
+  const bool has_callables = !description_.callable.records.empty();
+  builder_.set_rays(description_.launch, description_.max_trace_depth.value_or(nested ? kDefaultDepth : 1),
+                    description_.max_callable_depth.value_or(has_callables ? kDefaultDepth : 0),
+                    SourceLocation{description_.path});
 }
 
 const BindingUse* PipelineWorld::use_of(const Slot& slot) const {
   if (!slot.is_bound()) return nullptr;
   const auto found = modules_.bindings().find({slot.set.value_or(0), *slot.binding});
   return found == modules_.bindings().end() ? nullptr : &found->second;
-}
-
-void PipelineWorld::bind(const Slot& slot, uint64_t address_or_handle, uint64_t bytes_or_count) {
-  if (!slot.is_bound()) return;
-  bound_.insert({slot.set.value_or(0), *slot.binding});
-  write_descriptor(world, {slot.set.value_or(0), *slot.binding}, address_or_handle, bytes_or_count);
-}
-
-// Binds one element. By docs/abi.md, arrays of buffers and of acceleration structures have their descriptors
-// in a table in global memory.
-void PipelineWorld::bind_table(const Slot& slot, uint32_t element, uint64_t address, uint64_t bytes) {
-  const BindingUse* use = use_of(slot);
-  if (!use || use->binding.count == 1) return bind(slot, address, bytes);
-  const std::pair place{slot.set.value_or(0), *slot.binding};
-  const auto [it, is_new] = tables_.try_emplace(place, 0);
-  if (is_new) {
-    uint32_t count = use->binding.count;
-    const auto count_in = [&](const auto& resources) {
-      for (const auto& r : resources)
-        if (r.slot.is_bound() && std::pair(r.slot.set.value_or(0), *r.slot.binding) == place)
-          count = std::max(count, r.slot.element + 1);
-    };
-    count_in(description_.buffers);
-    count_in(description_.top_levels);
-    it->second = memory_.allocate(fmt::format("descriptors of set {} binding {}", place.first, place.second),
-                                  uint64_t{count} * isa::kDescriptorBytes);
-    bind(slot, it->second, count);
-  }
-  const uint64_t descriptor[2] = {address, bytes};
-  memory_.write(it->second + uint64_t{element} * isa::kDescriptorBytes, descriptor, sizeof(descriptor));
 }
 
 uint64_t PipelineWorld::address_of(const std::string& buffer) const {
@@ -151,58 +134,45 @@ void PipelineWorld::upload_buffers() {
     buffer_address_.push_back(memory_.allocate(title(b.name, b.slot), std::max<uint64_t>(bytes, 4)));
   }
   errors_.throw_if_errors();
+  Elements<BufferRange> bound;
   for (size_t i = 0; i < description_.buffers.size(); ++i) {
     const BufferDescription& b = description_.buffers[i];
     const std::vector<std::byte> bytes = bytes_of(
         b.data, block_of(b), [&](const std::string& name) { return address_of(name); }, errors_);
     if (!bytes.empty()) memory_.write(buffer_address_[i], bytes.data(), bytes.size());
-    bind_table(b.slot, b.slot.element, buffer_address_[i], bytes.size());
+    bound.add(b.slot, {buffer_address_[i], bytes.size()}, LaunchBuilder::unbound);
   }
-}
-
-// Returns resources ordered by set, binding and element, because images and samplers of an array have
-// consecutive numbers.
-std::vector<size_t> PipelineWorld::in_order(const std::vector<const Slot*>& slots) const {
-  std::vector<size_t> order(slots.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return std::tuple(slots[a]->set, slots[a]->binding, slots[a]->element) <
-           std::tuple(slots[b]->set, slots[b]->binding, slots[b]->element);
-  });
-  return order;
+  for (const auto& [place, elements] : bound.all) builder_.bind_buffers(place, elements);
 }
 
 void PipelineWorld::upload_images() {
-  std::vector<const Slot*> slots;
-  for (const ImageDescription& image : description_.images) slots.push_back(&image.slot);
-  image_handle_.resize(slots.size());
-  for (size_t i : in_order(slots)) {
-    const ImageDescription& d = description_.images[i];
+  const std::vector<ImageDescription>& all = description_.images;
+  images_.resize(all.size());
+  Elements<exec::ImageView> bound;
+  for (size_t i : in_order(all)) {
+    const ImageDescription& d = all[i];
     const BindingUse* use = use_of(d.slot);
     if (use && d.samples > 1 && !use->binding.multisampled)
       throw UserError(d.where, fmt::format("image '{}' has {} samples per texel, and the shader's has one",
                                            d.name, d.samples));
     Picture picture =
         make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "",
-                     world.launch_size, use ? use->binding.format : "");
+                     world().launch_size, use ? use->binding.format : "");
     picture.view.base = memory_.allocate(title(d.name, d.slot), picture.texels.size());
     memory_.write(picture.view.base, picture.texels.data(), picture.texels.size());
-    image_handle_[i] = world.images.size();
-    if (d.slot.element == 0) bind(d.slot, image_handle_[i], use ? std::max(1u, use->binding.count) : 1);
-    world.images.push_back(std::move(picture.view));
+    images_[i] = picture.view;
+    bound.add(d.slot, std::move(picture.view), unbound_image);
   }
+  for (auto& [place, elements] : bound.all) builder_.bind_images(place, std::move(elements));
 }
 
 void PipelineWorld::add_samplers() {
-  std::vector<const Slot*> slots;
-  for (const SamplerDescription& sampler : description_.samplers) slots.push_back(&sampler.slot);
-  for (size_t i : in_order(slots)) {
-    if (slots[i]->element == 0) bind(*slots[i], world.samplers.size(), 1);
-    world.samplers.push_back(description_.samplers[i].sampler);
-  }
+  Elements<exec::Sampler> bound;
+  for (const SamplerDescription& d : description_.samplers) bound.add(d.slot, d.sampler, unbound_sampler);
+  for (auto& [place, elements] : bound.all) builder_.bind_samplers(place, std::move(elements));
 }
 
-void PipelineWorld::build_structures(const GpuParams& gpu) {
+uint32_t PipelineWorld::build_structures(const GpuParams& gpu) {
   std::vector<rt::StructureInfo> bottoms;
   for (const BottomLevelDescription& description : description_.bottom_levels) {
     rt::BottomLevel level;
@@ -234,6 +204,7 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
   }
   structures.bottom_levels = bottoms.size();
   uint32_t stack_need = 0;
+  Elements<BufferRange> bound;
   for (const TopLevelDescription& description : description_.top_levels) {
     std::vector<rt::Instance> instances;
     for (const InstanceDescription& d : description.instances) {
@@ -252,10 +223,10 @@ void PipelineWorld::build_structures(const GpuParams& gpu) {
     structures.bytes += top.bytes;
     structures.instances += instances.size();
     structures.top_depth = std::max(structures.top_depth, top.depth);
-    if (description.slot.is_bound())
-      bind_table(description.slot, description.slot.element, top.address, top.bytes);
+    bound.add(description.slot, {top.address, top.bytes}, LaunchBuilder::unbound);
   }
-  place_records(world, stack_need);
+  for (const auto& [place, elements] : bound.all) builder_.bind_buffers(place, elements);
+  return stack_need;
 }
 
 uint32_t PipelineWorld::group_index(const GroupDescription& group, TableInput& input, bool is_hit) {
@@ -303,7 +274,7 @@ void PipelineWorld::fill_records() {
   fill(input.hit, description_.hit, true);
   fill(input.callable, description_.callable, false);
   errors_.throw_if_errors();
-  build_binding_table(world, memory_, input);
+  builder_.set_records(input);
 }
 
 void PipelineWorld::set_push_constants() {
@@ -322,18 +293,13 @@ void PipelineWorld::set_push_constants() {
   }
   const std::vector<std::byte> bytes = bytes_of(
       description_.push_constants, block, [&](const std::string& name) { return address_of(name); }, errors_);
-  const uint64_t room = isa::kConstantBankBytes - isa::kPushConstantOffset;
-  if (bytes.size() > room)
-    errors_.error(
-        description_.push_constants.where,
-        fmt::format("{} bytes of push constants do not fit: there is room for {}", bytes.size(), room));
-  else if (block && bytes.size() < block->bytes)
+  if (block && bytes.size() < block->bytes)
     errors_.error(
         description_.push_constants.where,
         fmt::format("the push constants have {} bytes, and the shader's have {}", bytes.size(), block->bytes),
         fmt::format("the shader declares them at {}", reader->where_declared("push_constant").to_string()));
   else
-    std::memcpy(world.constant_bank.data() + isa::kPushConstantOffset, bytes.data(), bytes.size());
+    builder_.set_push_constants(bytes, 0, description_.push_constants.where);
 }
 
 std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
@@ -342,7 +308,7 @@ std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
 
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
                           uint32_t threads, const LaunchWatch& watch, const Observation& observe) {
-  RenderResult result = run_world(pipeline.world, gpu, timing, no_skip, threads, watch, observe);
+  RenderResult result = run_world(pipeline.world(), gpu, timing, no_skip, threads, watch, observe);
   result.structures = pipeline.structures;
   result.warnings = pipeline.warnings;
   return result;

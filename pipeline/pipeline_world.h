@@ -5,21 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "pipeline/binding_table.h"
 #include "pipeline/description/check.h"
+#include "pipeline/launch_builder.h"
 #include "pipeline/render.h"
-#include "pipeline/unbound.h"
 
 namespace glint::pipeline {
 
-// Holds memory and world of one launch. It cannot be moved, because `world` points into it.
+// Holds memory and world of one launch. It cannot be moved, because the world points into it.
 class PipelineWorld {
  public:
   // Throws UserError that lists what is wrong with the description, or UnsupportedError for what a shader
@@ -28,7 +25,8 @@ class PipelineWorld {
   PipelineWorld(const PipelineWorld&) = delete;
   PipelineWorld& operator=(const PipelineWorld&) = delete;
 
-  exec::World world;
+  exec::World& world() { return builder_.world; }
+  const exec::World& world() const { return builder_.world; }
   StructureCounts structures;
   std::vector<std::string> warnings;
   const Modules& modules() const { return modules_; }
@@ -37,21 +35,17 @@ class PipelineWorld {
 
   // Returns what a buffer or an image holds, by its number in the description.
   std::span<const std::byte> buffer(size_t index) const;
-  const exec::ImageView& image(size_t index) const { return world.images[image_handle_[index]]; }
+  const exec::ImageView& image(size_t index) const { return images_[index]; }
 
  private:
-  void link(const GpuParams& gpu);
   void set_launch();
   void upload_buffers();
   void upload_images();
   void add_samplers();
-  void build_structures(const GpuParams& gpu);
+  uint32_t build_structures(const GpuParams& gpu);
   void fill_records();
   void set_push_constants();
-  void bind(const Slot& slot, uint64_t address_or_handle, uint64_t bytes_or_count);
-  void bind_table(const Slot& slot, uint32_t element, uint64_t address, uint64_t bytes);
   const BindingUse* use_of(const Slot& slot) const;
-  std::vector<size_t> in_order(const std::vector<const Slot*>& slots) const;
   TableRecord record(const RecordDescription& description, TableInput& input, bool is_hit);
   uint32_t group_index(const GroupDescription& group, TableInput& input, bool is_hit);
   uint64_t address_of(const std::string& buffer) const;
@@ -59,12 +53,11 @@ class PipelineWorld {
   const PipelineDescription description_;
   const Modules modules_;
   mem::AddressSpace memory_;
-  exec::Image image_;
+  const LinkedShaders shaders_;
+  LaunchBuilder builder_;
   std::vector<Address> buffer_address_;
   std::vector<uint64_t> buffer_bytes_;
-  std::vector<size_t> image_handle_;
-  std::set<BindingPlace> bound_;
-  std::map<std::pair<uint32_t, uint32_t>, Address> tables_;  // tables of arrays of buffers and structures
+  std::vector<exec::ImageView> images_;
   Diagnostics errors_;
 };
 

@@ -22,6 +22,7 @@
 #include "base/ordered_work.h"
 #include "base/parallel_ranges.h"
 #include "pipeline/binding_table.h"
+#include "pipeline/linked_shaders.h"
 #include "pipeline/software_traversal.h"
 #include "pipeline/structure_cache.h"
 
@@ -99,9 +100,7 @@ WorkloadShaders compile_workload(const RenderJob& job) {
   }
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
   const CompilerParams compiler = compiler_for(job.gpu);
-  const frontend::BackendOptions backend{
-      compiler.max_registers, compiler.schedule,      compiler.contract,      compiler.queries_call,
-      compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces};
+  const frontend::BackendOptions backend = backend_options(compiler);
   auto compile = [&](const char* file) {
     out.programs.push_back(frontend::compile_file(job.shader_dir + "/" + file, glsl, backend, out.warnings));
     return uint32_t(out.programs.size() - 1);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "isa/descriptors.h"
@@ -23,19 +24,33 @@ std::string title(const frontend::Binding& binding) {
                      binding.name.empty() ? "" : fmt::format(" ({})", binding.name));
 }
 
-exec::ImageView unbound_image(const frontend::Binding& binding) {
+exec::ImageView image_titled(std::string title) {
   exec::ImageView out;
-  out.name = title(binding), out.is_bound = false;
+  out.name = std::move(title), out.is_bound = false;
   return out;
 }
 
-exec::Sampler unbound_sampler(const frontend::Binding& binding) {
+exec::Sampler sampler_titled(std::string title) {
   exec::Sampler out;
-  out.unbound = title(binding);
+  out.unbound = std::move(title);
+  return out;
+}
+
+frontend::Binding nameless(BindingPlace place) {
+  frontend::Binding out;
+  out.set = place.first, out.binding = place.second;
   return out;
 }
 
 }  // namespace
+
+exec::ImageView unbound_image(BindingPlace place) {
+  return image_titled(title(nameless(place)));
+}
+
+exec::Sampler unbound_sampler(BindingPlace place) {
+  return sampler_titled(title(nameless(place)));
+}
 
 void write_descriptor(exec::World& world, BindingPlace place, uint64_t address_or_handle,
                       uint64_t bytes_or_count) {
@@ -52,17 +67,17 @@ void mark_unbound(exec::World& world, const frontend::Binding& binding) {
   switch (binding.kind) {
     case BindingKind::StorageImage:
     case BindingKind::SampledImage:
-      value = world.images.size();
-      world.images.insert(world.images.end(), count, unbound_image(binding));
+      value = world.num_images();
+      world.images.insert(world.images.end(), count, image_titled(title(binding)));
       break;
     case BindingKind::Sampler:
-      value = world.samplers.size();
-      world.samplers.insert(world.samplers.end(), count, unbound_sampler(binding));
+      value = world.num_samplers();
+      world.samplers.insert(world.samplers.end(), count, sampler_titled(title(binding)));
       break;
     case BindingKind::Other: {  // The address has the number of an image and of a sampler in its low half.
-      const size_t number = std::max(world.images.size(), world.samplers.size());
-      world.images.resize(number + 1, unbound_image(binding));
-      world.samplers.resize(number + 1, unbound_sampler(binding));
+      const size_t number = std::max(world.num_images(), world.num_samplers());
+      world.images.resize(number + 1 - world.pool_images(), image_titled(title(binding)));
+      world.samplers.resize(number + 1 - world.pool_samplers(), sampler_titled(title(binding)));
       value += number;
       break;
     }
@@ -82,9 +97,9 @@ void mark_unbound(exec::World& world, const std::vector<frontend::Binding>& decl
 void mark_rest_unbound(exec::World& world, const frontend::Binding* array, size_t first) {
   const size_t rest = array && array->count > first ? array->count - first : 0;
   if (rest && array->kind == BindingKind::Sampler)
-    world.samplers.insert(world.samplers.end(), rest, unbound_sampler(*array));
+    world.samplers.insert(world.samplers.end(), rest, sampler_titled(title(*array)));
   else if (rest)
-    world.images.insert(world.images.end(), rest, unbound_image(*array));
+    world.images.insert(world.images.end(), rest, image_titled(title(*array)));
 }
 
 void mark_all_unbound(exec::World& world, const std::set<uint32_t>& bound) {

@@ -14,6 +14,7 @@
 #include "exec/image.h"
 #include "frontend/spirv/spirv.h"
 #include "pipeline/description/data.h"
+#include "pipeline/linked_shaders.h"
 
 namespace glint::pipeline {
 namespace {
@@ -125,22 +126,21 @@ void Modules::compile(const ShaderFile& file, const PipelineDescription& descrip
       values[constant.id] = bits_of(value, constant, errors);
     }
   errors.throw_if_errors();
-  words = frontend::specialize(std::move(words), values);
-  module.reflection = frontend::reflect(words, file.path, file.entry);
-  const auto validity = !is_binary(file.path) && values.empty() ? frontend::Validity::Known  // by glslang
-                                                                : frontend::Validity::Unknown;
-  frontend::CompiledModule compiled;
-  if (only_reflect)
-    compiled.simplified = frontend::simplify(words, file.path, notes, validity);
-  else
-    compiled = frontend::compile_module(
-        words, file.path, file.entry,
-        {compiler.max_registers, compiler.schedule, compiler.contract, compiler.queries_call,
-         compiler.guard_latency, compiler.reorder_calls, compiler.reorder_traces},
-        notes, file.glsl.cache, validity);
-  simplified_.push_back(frontend::reflect(compiled.simplified, file.path, file.entry));
+  const auto validity = is_binary(file.path) ? frontend::Validity::Unknown : frontend::Validity::Known;
+  std::vector<uint32_t> simplified;
+  if (only_reflect) {
+    words = frontend::specialize(std::move(words), values);
+    module.reflection = frontend::reflect(words, file.path, file.entry);
+    simplified =
+        frontend::simplify(words, file.path, notes, values.empty() ? validity : frontend::Validity::Unknown);
+  } else {
+    CompiledStage stage = compile_stage(std::move(words), {file.path, file.entry, values, validity}, compiler,
+                                        notes, file.glsl.cache);
+    module.reflection = std::move(stage.reflection), simplified = std::move(stage.simplified);
+    module.program = std::move(stage.program);
+  }
+  simplified_.push_back(frontend::reflect(simplified, file.path, file.entry));
   module.reflection.local_size = simplified_.back().local_size;
-  module.program = std::move(compiled.program);
   warnings.insert(warnings.end(), notes.messages().begin(), notes.messages().end());
   modules_.push_back(std::move(module));
 }

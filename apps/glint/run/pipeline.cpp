@@ -117,8 +117,8 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   };
   add(world.description().images, true);
   add(world.description().buffers, false);
-  info.frame[0].second = world.world.launch_size[0];
-  info.frame[1].second = world.world.launch_size[1];
+  info.frame[0].second = world.world().launch_size[0];
+  info.frame[1].second = world.world().launch_size[1];
   return info;
 }
 
@@ -154,11 +154,11 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   job.no_skip = options.no_skip;
   pipeline::PipelineWorld world(description, job.gpu);
   exec::PrintLog prints(options.print_limit);
-  world.world.prints = &prints;
-  world.world.on_fault = options.on_fault;
+  world.world().prints = &prints;
+  world.world().on_fault = options.on_fault;
   for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
 
-  const auto& [x, y, z] = world.world.launch_size;
+  const auto& [x, y, z] = world.world().launch_size;
   const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
                                         description.compute.empty() ? "rays" : "threads", mode, config);
   report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
