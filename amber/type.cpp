@@ -52,30 +52,23 @@ std::optional<Type> format_named(const std::string& name) {
   std::smatch m;
   if (std::regex_match(name, m, std::regex("A8B8G8R8_(UNORM|SNORM|UINT|SINT|SRGB)_PACK32")))
     return format_named("R8G8B8A8_" + m[1].str());
-  const std::map<std::string, std::string> packed{{"A2B10G10R10_UNORM_PACK32", "rgb10a2_unorm"},
-                                                  {"A2B10G10R10_UINT_PACK32", "rgb10a2_uint"},
-                                                  {"B10G11R11_UFLOAT_PACK32", "r11g11b10_float"},
-                                                  {"E5B9G9R9_UFLOAT_PACK32", "rgb9e5_float"}};
-  if (const auto found = packed.find(name); found != packed.end()) {
-    type.scalar = Scalar::U32, type.format = texel_format(found->second);
+  type.format = exec::format_of_vulkan(name);
+  if (type.format && exec::info_of(*type.format).bits == 0) {
+    const uint32_t bytes = exec::info_of(*type.format).bytes;
+    type.scalar = bytes == 1 ? Scalar::U8 : bytes == 2 ? Scalar::U16 : Scalar::U32;
     return type;
   }
   if (!std::regex_match(
           name, m,
           std::regex("((?:[RGBA](?:8|16|32|64))+)_(UNORM|SNORM|UINT|SINT|SFLOAT|SRGB|SSCALED|USCALED)")))
     return std::nullopt;
-  std::string channels, lower;
   int bits = 0;
+  type.rows = 0;
   const std::string list = m[1].str(), numeric = m[2].str();
   const std::regex channel("([RGBA])(\\d+)");
   for (std::sregex_iterator it(list.begin(), list.end(), channel), end; it != end; ++it)
-    channels += char(std::tolower((*it)[1].str()[0])), bits = std::stoi((*it)[2].str());
-  for (char c : numeric == "SFLOAT" ? std::string("FLOAT") : numeric) lower += char(std::tolower(c));
+    ++type.rows, bits = std::stoi((*it)[2].str());
   type.scalar = *channel_scalar(bits, numeric);
-  type.rows = uint32_t(channels.size());
-  type.format = bits == 64 && channels == "r" && !is_float(type.scalar)
-                    ? kHalves
-                    : texel_format(fmt::format("{}{}_{}", channels, bits, lower));
   return type;
 }
 

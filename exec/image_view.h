@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -39,8 +41,18 @@ struct TexelIndex {
   uint32_t x = 0, y = 0, z = 0, layer = 0, level = 0;
 };
 
-// Describes an image. Model: texels lie in linear rows: x, then y, then z, then layer, then level, with
-// nothing between them. Hardware swizzles. A cube has six layers: +x -x +y -y +z -z.
+// Says what a view shows as red, green, blue and alpha.
+enum class Component : uint8_t { Red, Green, Blue, Alpha, Zero, One };
+using Swizzle = std::array<Component, 4>;
+inline constexpr Swizzle kAsStored{Component::Red, Component::Green, Component::Blue, Component::Alpha};
+
+// Names levels and layers of an image. Samples of a texel count as layers.
+struct ImageRange {
+  uint32_t first_level = 0, levels = 1, first_layer = 0, layers = 1;
+};
+
+// Describes an image or a part of one. Model: texels lie in linear rows: x, then y, then z, then layer, then
+// level, with nothing between them. Hardware swizzles. A cube has six layers: +x -x +y -y +z -z.
 struct ImageView {
   using Format = TexelFormat;
   Format format = Format::Rgba32Float;
@@ -52,6 +64,10 @@ struct ImageView {
   uint32_t samples = 1;  // samples of a texel, which are that many layers
   Sampler sampler{};
   bool is_bound = true;  // false: its use is a fault, and `name` names the place
+  // A view of some layers begins at layer `first_layer` of `stored_layers` that each level has in memory.
+  // With 0, memory holds the view's layers only.
+  uint32_t first_layer = 0, stored_layers = 0;
+  Swizzle swizzle = kAsStored;  // of textures
 
   uint32_t texel_bytes() const { return info_of(format).bytes; }
   // Returns the texels along an axis of a level: half of the level above, and at least 1.
@@ -59,19 +75,47 @@ struct ImageView {
     const uint32_t full = axis == 0 ? width : axis == 1 ? height : depth;
     return level < 32 && full >> level > 1 ? full >> level : 1;
   }
-  // Returns the bytes of all layers of the levels before `level`. With `levels`, these are the bytes of the
-  // image.
+  uint32_t layers_in_memory() const { return stored_layers ? stored_layers : layers; }
+  // Returns the bytes of all layers in memory of the levels before `level`. With `levels`, these are the
+  // bytes of the image.
   uint64_t bytes_before_level(uint32_t level) const {
     uint64_t texels = 0;
     for (uint32_t l = 0; l < level; ++l)
-      texels += uint64_t{extent(0, l)} * extent(1, l) * extent(2, l) * layers;
+      texels += uint64_t{extent(0, l)} * extent(1, l) * extent(2, l) * layers_in_memory();
     return texels * texel_bytes();
   }
   uint64_t bytes() const { return bytes_before_level(levels); }
   Address address_of(const TexelIndex& at) const {
-    const uint64_t row = (uint64_t{at.layer} * extent(2, at.level) + at.z) * extent(1, at.level) + at.y;
+    const uint64_t layer = uint64_t{first_layer} + at.layer;
+    const uint64_t row = (layer * extent(2, at.level) + at.z) * extent(1, at.level) + at.y;
     return base + bytes_before_level(at.level) + (row * extent(0, at.level) + at.x) * texel_bytes();
   }
 };
+
+// Returns a view of a part of an image, which has to have the part. The part's texels stay where they are.
+inline ImageView part_of(const ImageView& image, const ImageRange& range) {
+  ImageView part = image;
+  part.base += image.bytes_before_level(range.first_level);
+  part.width = image.extent(0, range.first_level);
+  part.height = image.extent(1, range.first_level);
+  part.depth = image.extent(2, range.first_level);
+  part.levels = range.levels, part.layers = range.layers;
+  part.stored_layers = image.layers_in_memory();
+  part.first_layer = image.first_layer + range.first_layer;
+  return part;
+}
+
+// Returns a texel as the view shows it.
+inline Words swizzled(const ImageView& image, const Words& texel) {
+  if (image.swizzle == kAsStored) [[likely]]
+    return texel;
+  Words out;
+  for (size_t i = 0; i < 4; ++i)
+    out[i] = image.swizzle[i] == Component::Zero  ? 0
+             : image.swizzle[i] != Component::One ? texel[size_t(image.swizzle[i])]
+             : is_integer(info_of(image.format))  ? 1
+                                                  : std::bit_cast<uint32_t>(1.0f);
+  return out;
+}
 
 }  // namespace glint::exec

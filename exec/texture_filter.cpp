@@ -105,7 +105,7 @@ Words TexelReader::compared(const SampleRequest& request, Words texel) const {
           0};
 }
 
-Words TexelReader::fetch(const TexelIndex& at) {
+Words TexelReader::stored(const TexelIndex& at) {
   const Address address = image_.address_of(at);
   const std::byte* from = memory_.find(address, image_.texel_bytes());
   if (!from) {
@@ -127,7 +127,7 @@ Words TexelReader::read(const SampleRequest& request, const Place& place, uint32
   }
   if (at[0] == kBorder || at[1] == kBorder || at[2] == kBorder)
     return compared(request, keep_channels(image_.format, sampler_.border));
-  return compared(request, fetch({uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]), layer, level}));
+  return compared(request, stored({uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]), layer, level}));
 }
 
 void TexelReader::read_block(const SampleRequest& request, const Place& place, uint32_t level,
@@ -188,17 +188,21 @@ Words TexelReader::sample(const SampleRequest& request) {
     return {};
   }
   const Words first = filter(request, place, levels.first, filter_kind);
-  return mixes ? mixed(first, filter(request, place, levels.second, filter_kind), levels.weight) : first;
+  // Filters work on each component alone, so the components may be chosen after them.
+  return swizzled(
+      image_,
+      mixes ? mixed(first, filter(request, place, levels.second, filter_kind), levels.weight) : first);
 }
 
 Words TexelReader::gather(const SampleRequest& request, size_t component) {
   const Place place = place_of(request);
   std::array<Axis, 3> axes{};
   for (int axis = 0; axis < 2; ++axis) axes[size_t(axis)] = axis_of(request, place, axis, 0, true);
-  std::array<Words, 8> texel;
+  std::array<Words, 8> texel{};
   read_block(request, place, 0, axes, texel);
   const size_t c = request.compare ? 0 : component;
-  return {texel[2][c], texel[3][c], texel[1][c], texel[0][c]};
+  const auto shown = [&](size_t k) { return swizzled(image_, texel[k])[c]; };
+  return {shown(2), shown(3), shown(1), shown(0)};
 }
 
 }  // namespace glint::exec

@@ -34,7 +34,7 @@ class TexelReader {
   // (0,0).
   Words gather(const SampleRequest& request, size_t component);
   // Returns one texel, which must lie in the image.
-  Words fetch(const TexelIndex& at);
+  Words fetch(const TexelIndex& at) { return swizzled(image_, stored(at)); }
 
   std::span<const Address> texels() const { return {texels_.data(), num_texels_}; }
   const char* error() const { return error_; }  // null: there was none
@@ -57,6 +57,7 @@ class TexelReader {
   // Reads the texels of a linear filter: bit 0 of the index is x, bit 1 is y, bit 2 is z.
   void read_block(const SampleRequest& request, const Place& place, uint32_t level,
                   const std::array<Axis, 3>& axes, std::array<Words, 8>& out);
+  Words stored(const TexelIndex& at);
   Words read(const SampleRequest& request, const Place& place, uint32_t level, std::array<int64_t, 3> at);
   Words compared(const SampleRequest& request, Words texel) const;
 

@@ -64,6 +64,18 @@ constexpr FormatInfo kFormats[] = {
     {"rgb10a2_unorm", 4, 4, 0, Unorm, 0x10e0, kRgba},
     {"rgb10a2_uint", 4, 4, 0, Uint, 0, kRgba},
     {"rgb9e5_float", 4, 3, 0, Float, 0, kRgb},
+    {"r4g4_unorm_pack8", 1, 2, 0, Unorm, 0, kRg},
+    {"r4g4b4a4_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"b4g4r4a4_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"a4r4g4b4_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"a4b4g4r4_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"r5g6b5_unorm_pack16", 2, 3, 0, Unorm, 0x10d4, kRgb},
+    {"b5g6r5_unorm_pack16", 2, 3, 0, Unorm, 0, kRgb},
+    {"r5g5b5a1_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"b5g5r5a1_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"a1r5g5b5_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
+    {"bgr10a2_unorm", 4, 4, 0, Unorm, 0, kBgra},
+    {"bgr10a2_uint", 4, 4, 0, Uint, 0, kBgra},
 };
 static_assert(std::size(kFormats) == size_t(F::Count));
 
@@ -179,18 +191,45 @@ uint32_t encode_channel(uint32_t word, int width, Numeric numeric, bool is_alpha
   return 0;
 }
 
-// Decodes formats of 32 bits whose channels differ in size, the first channel lowest.
+// Says where the channels of a packed format of integers lie: the lowest bit of red, green, blue and alpha,
+// and their widths.
+struct PackedChannels {
+  F format;
+  struct Field {
+    uint8_t at = 0, width = 0;
+  };
+  std::array<Field, 4> field;
+};
+constexpr PackedChannels kPacked[] = {
+    {F::Rgb10a2Unorm, {{{0, 10}, {10, 10}, {20, 10}, {30, 2}}}},
+    {F::Rgb10a2Uint, {{{0, 10}, {10, 10}, {20, 10}, {30, 2}}}},
+    {F::Bgr10a2Unorm, {{{20, 10}, {10, 10}, {0, 10}, {30, 2}}}},
+    {F::Bgr10a2Uint, {{{20, 10}, {10, 10}, {0, 10}, {30, 2}}}},
+    {F::R4g4Pack8, {{{4, 4}, {0, 4}, {}, {}}}},
+    {F::R4g4b4a4Pack16, {{{12, 4}, {8, 4}, {4, 4}, {0, 4}}}},
+    {F::B4g4r4a4Pack16, {{{4, 4}, {8, 4}, {12, 4}, {0, 4}}}},
+    {F::A4r4g4b4Pack16, {{{8, 4}, {4, 4}, {0, 4}, {12, 4}}}},
+    {F::A4b4g4r4Pack16, {{{0, 4}, {4, 4}, {8, 4}, {12, 4}}}},
+    {F::R5g6b5Pack16, {{{11, 5}, {5, 6}, {0, 5}, {}}}},
+    {F::B5g6r5Pack16, {{{0, 5}, {5, 6}, {11, 5}, {}}}},
+    {F::R5g5b5a1Pack16, {{{11, 5}, {6, 5}, {1, 5}, {0, 1}}}},
+    {F::B5g5r5a1Pack16, {{{1, 5}, {6, 5}, {11, 5}, {0, 1}}}},
+    {F::A1r5g5b5Pack16, {{{10, 5}, {5, 5}, {0, 5}, {15, 1}}}},
+};
+const PackedChannels& packed_channels(F format) {
+  const auto* const found =
+      std::find_if(std::begin(kPacked), std::end(kPacked), [&](const auto& p) { return p.format == format; });
+  if (found == std::end(kPacked)) GLINT_PANIC("format {} is not packed", info_of(format).name);
+  return *found;
+}
+
+// Decodes formats whose channels differ in size or have less than 8 bits.
 Words decode_packed(F format, uint32_t bits) {
   const auto field = [&](int at, int width) { return bits >> at & ((1u << width) - 1); };
   switch (format) {
     case F::R11g11b10Float:
       return {bits_of(from_small(field(0, 11), 6)), bits_of(from_small(field(11, 11), 6)),
               bits_of(from_small(field(22, 10), 5)), bits_of(1.0f)};
-    case F::Rgb10a2Uint:
-      return {field(0, 10), field(10, 10), field(20, 10), field(30, 2)};
-    case F::Rgb10a2Unorm:
-      return {bits_of(float(field(0, 10)) / 1023.0f), bits_of(float(field(10, 10)) / 1023.0f),
-              bits_of(float(field(20, 10)) / 1023.0f), bits_of(float(field(30, 2)) / 3.0f)};
     case F::Rgb9e5Float: {
       Words words{0, 0, 0, bits_of(1.0f)};
       for (int i = 0; i < 3; ++i)
@@ -198,8 +237,14 @@ Words decode_packed(F format, uint32_t bits) {
             bits_of(std::ldexp(float(field(9 * i, 9)), int(field(27, 5)) - kBias - kSharedBits));
       return words;
     }
-    default:
-      GLINT_PANIC("format {} is not packed", info_of(format).name);
+    default: {
+      const PackedChannels& packed = packed_channels(format);
+      Words words{};
+      for (size_t i = 0; i < 4; ++i)
+        if (const auto& f = packed.field[i]; f.width)
+          words[i] = decode_channel(field(f.at, f.width), f.width, info_of(format).numeric, i == 3);
+      return keep_channels(format, words);
+    }
   }
 }
 
@@ -208,16 +253,16 @@ uint32_t encode_packed(F format, const Words& w) {
     case F::R11g11b10Float:
       return to_unsigned_small(float_of(w[0]), 6) | to_unsigned_small(float_of(w[1]), 6) << 11 |
              to_unsigned_small(float_of(w[2]), 5) << 22;
-    case F::Rgb10a2Uint:
-      return std::min(w[0], 1023u) | std::min(w[1], 1023u) << 10 | std::min(w[2], 1023u) << 20 |
-             std::min(w[3], 3u) << 30;
-    case F::Rgb10a2Unorm:
-      return to_unorm(float_of(w[0]), 10) | to_unorm(float_of(w[1]), 10) << 10 |
-             to_unorm(float_of(w[2]), 10) << 20 | to_unorm(float_of(w[3]), 2) << 30;
     case F::Rgb9e5Float:
       return to_shared_exponent(w);
-    default:
-      GLINT_PANIC("format {} is not packed", info_of(format).name);
+    default: {
+      const PackedChannels& packed = packed_channels(format);
+      uint32_t bits = 0;
+      for (size_t i = 0; i < 4; ++i)
+        if (const auto& f = packed.field[i]; f.width)
+          bits |= encode_channel(w[i], f.width, info_of(format).numeric, i == 3) << f.at;
+      return bits;
+    }
   }
 }
 
@@ -255,8 +300,8 @@ Words decode(TexelFormat format, const std::byte* from) {
   }
   const FormatInfo& info = info_of(format);
   if (info.bits == 0) {
-    uint32_t bits;
-    std::memcpy(&bits, from, 4);
+    uint32_t bits = 0;
+    std::memcpy(&bits, from, info.bytes);
     return decode_packed(format, bits);
   }
   Words words{0, 0, 0, is_integer(info) ? 1 : bits_of(1.0f)};
@@ -284,7 +329,7 @@ void encode(TexelFormat format, const Words& words, std::byte* to) {
   const FormatInfo& info = info_of(format);
   if (info.bits == 0) {
     const uint32_t bits = encode_packed(format, words);
-    std::memcpy(to, &bits, 4);
+    std::memcpy(to, &bits, info.bytes);
     return;
   }
   for (size_t i = 0; i < info.channels; ++i) {

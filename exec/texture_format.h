@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace glint::exec {
@@ -58,6 +59,19 @@ enum class TexelFormat : uint8_t {
   Rgb10a2Unorm,
   Rgb10a2Uint,
   Rgb9e5Float,
+  // Vulkan's packed formats of less than 8 bits a channel have Vulkan's names, the highest bits first.
+  R4g4Pack8,
+  R4g4b4a4Pack16,
+  B4g4r4a4Pack16,
+  A4r4g4b4Pack16,
+  A4b4g4r4Pack16,
+  R5g6b5Pack16,
+  B5g6r5Pack16,
+  R5g5b5a1Pack16,
+  B5g5r5a1Pack16,
+  A1r5g5b5Pack16,
+  Bgr10a2Unorm,
+  Bgr10a2Uint,
   Count
 };
 
@@ -73,6 +87,9 @@ struct FormatInfo {
   uint16_t opencl_order;
 };
 const FormatInfo& info_of(TexelFormat format);
+// Returns the format of a name as Vulkan has it, with or without VK_FORMAT_ before it. Formats with the same
+// bits are one: A8B8G8R8_UNORM_PACK32 is R8G8B8A8_UNORM, and D16_UNORM is R16_UNORM.
+std::optional<TexelFormat> format_of_vulkan(std::string_view name);
 inline bool is_integer(const FormatInfo& info) {
   return info.numeric == Numeric::Uint || info.numeric == Numeric::Sint;
 }

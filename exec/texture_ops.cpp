@@ -71,7 +71,7 @@ bool TextureOps::read(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
       if (place.is_inside())
         out = reader.fetch(place.index());
       else if (world_.robust_images)
-        out = keep_channels(image->format, {});
+        out = swizzled(*image, keep_channels(image->format, {}));
       else if (!pass(lane, [&] { return "reads texel " + describe(place, *image); }))
         return false;
     } else {
