@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <span>
 
+#include "amber/buffer_memory.h"
 #include "amber/declared_binding.h"
 #include "pipeline/launch_builder.h"
 #include "pipeline/render.h"
@@ -60,7 +61,6 @@ class Launch {
     world.robust_images = world.robust_buffers = !options.strict || declares_robust_access(script);
     world.on_fault = options.on_fault;
     world.prints = options.prints;
-    plan_parts();
     for (const Binding& binding : pipeline_.bindings) bind(binding);
     if (pipeline_.is_ray_tracing)
       set_ray_tracing();
@@ -72,22 +72,11 @@ class Launch {
   Launched run(const LaunchOptions& options) {
     const pipeline::RenderResult result = pipeline::run_world(builder_.world, options.gpu, options.timing,
                                                               options.no_skip, options.threads, {});
-    for (const auto& [name, parts] : parts_)
-      for (const Part& part : parts)
-        if (part.address && part.end > part.first) {
-          std::byte* const to = script_.buffers.at(name).bytes.data() + part.first;
-          std::memcpy(to, memory_.find(part.address, part.end - part.first), part.end - part.first);
-        }
+    for (auto& [name, buffer] : script_.buffers) buffers_.read_back(buffer);
     return {result.cycles, result.faults};
   }
 
  private:
-  // Names bytes of a buffer that are an allocation of their own in memory, so that an access past the part's
-  // end is outside all allocations.
-  struct Part {
-    uint64_t first = 0, end = 0;
-    Address address = 0;  // 0: not yet in memory
-  };
   void set_compute();
   void set_ray_tracing();
   void bind(const Binding& binding);
@@ -97,8 +86,6 @@ class Launch {
   void bind_structures(const Binding& binding);
   void set_push_constants(const Binding& binding);
   exec::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
-  void plan_parts();
-  Address upload(const Buffer& buffer, uint64_t offset);
   Address build(const std::string& top_level);
   rt::StructureInfo build_bottom(const std::string& name);
   pipeline::TableRecord record(const std::string& group, pipeline::TableInput& input);
@@ -110,12 +97,12 @@ class Launch {
   const Pipeline& pipeline_;
   const std::vector<CompiledShader>& shaders_;
   mem::AddressSpace memory_;
+  BufferMemory buffers_{memory_};
   const pipeline::LinkedShaders code_;
   pipeline::LaunchBuilder builder_;
   const rt::BuildOptions& bvh_;
-  uint32_t stack_need_ = 0;                         // entries for the deepest structure
-  std::map<std::string, std::vector<Part>> parts_;  // of buffers that something binds
-  std::map<std::string, Address> structures_;       // of top levels
+  uint32_t stack_need_ = 0;                    // entries for the deepest structure
+  std::map<std::string, Address> structures_;  // of top levels
 };
 
 void Launch::set_compute() {
@@ -190,50 +177,6 @@ void Launch::bind(const Binding& binding) {
   }
 }
 
-// Uploads a buffer in the parts that descriptors name, so that an access past the range of a descriptor is a
-// fault. Choice: where parts overlap, the whole buffer is one part, because a shader may see the same byte
-// through both descriptors.
-void Launch::plan_parts() {
-  for (const Binding& binding : pipeline_.bindings) {
-    if (binding.kind == BindKind::Sampler || binding.kind == BindKind::Structure ||
-        binding.kind == BindKind::PushConstants)
-      continue;
-    const bool has_range = binding.kind == BindKind::Uniform || binding.kind == BindKind::Storage;
-    for (size_t i = 0; i < binding.names.size(); ++i) {
-      Part part;
-      part.end = script_.buffers.at(binding.names[i]).bytes.size();
-      if (has_range && i < binding.offsets.size()) part.first = std::min(binding.offsets[i], part.end);
-      if (has_range && i < binding.ranges.size())
-        part.end = part.first + std::min(binding.ranges[i], part.end - part.first);
-      std::vector<Part>& parts = parts_[binding.names[i]];
-      const auto is_same = [&](const Part& p) { return p.first == part.first && p.end == part.end; };
-      if (std::none_of(parts.begin(), parts.end(), is_same)) parts.push_back(part);
-    }
-  }
-  for (auto& [name, parts] : parts_) {
-    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.first < b.first; });
-    const auto overlap = [](const Part& a, const Part& b) { return b.first < a.end; };
-    if (std::adjacent_find(parts.begin(), parts.end(), overlap) != parts.end())
-      parts = {{0, script_.buffers.at(name).bytes.size(), 0}};
-  }
-}
-
-// Returns the address of byte `offset` of a buffer, which is uploaded at the first call.
-Address Launch::upload(const Buffer& buffer, uint64_t offset) {
-  std::vector<Part>& parts = parts_.at(buffer.name);
-  Part& part = *std::prev(std::upper_bound(parts.begin(), parts.end(), offset,
-                                           [](uint64_t at, const Part& p) { return at < p.first; }));
-  const uint64_t bytes = part.end - part.first;
-  if (!part.address) {
-    const std::string title = bytes == buffer.bytes.size()
-                                  ? buffer.name
-                                  : fmt::format("{}, bytes {} to {}", buffer.name, part.first, part.end);
-    part.address = memory_.allocate(title, std::max<uint64_t>(bytes, 4));
-    if (bytes) memory_.write(part.address, buffer.bytes.data() + part.first, bytes);
-  }
-  return part.address + offset - part.first;
-}
-
 void Launch::bind_buffers(const Binding& binding) {
   std::vector<pipeline::BufferRange> all;
   for (size_t i = 0; i < binding.names.size(); ++i) {
@@ -242,9 +185,9 @@ void Launch::bind_buffers(const Binding& binding) {
     if (offset >= buffer.bytes.size())
       throw UserError(binding.where, fmt::format("the offset {} is past the end of buffer '{}' ({} bytes)",
                                                  offset, buffer.name, buffer.bytes.size()));
-    const uint64_t rest = buffer.bytes.size() - offset;
-    all.push_back(
-        {upload(buffer, offset), i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest});
+    const uint64_t rest = buffer.bytes.size() - offset,
+                   bytes = i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest;
+    all.push_back({buffers_.range(buffer, offset, offset + bytes), bytes});
   }
   builder_.bind_buffers(place_of(binding), all);
 }
@@ -270,14 +213,12 @@ exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
                : dimensions == 1 ? isa::ImageShape::D1
                : dimensions == 2 ? isa::ImageShape::D2
                                  : isa::ImageShape::D3;
-  view.base = upload(buffer, 0) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
+  view.base = buffers_.whole(buffer) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
   if (binding.base_level >= view.levels)
     throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
-  const exec::ImageView whole = view;
-  view.base += whole.bytes_before_level(binding.base_level);
-  view.width = whole.extent(0, binding.base_level), view.height = whole.extent(1, binding.base_level),
-  view.depth = whole.extent(2, binding.base_level);
-  view.levels -= binding.base_level;
+  view = exec::part_of(
+      view,
+      {.first_level = binding.base_level, .levels = view.levels - binding.base_level, .layers = view.layers});
   if (element < binding.samplers.size()) view.sampler = script_.samplers.at(binding.samplers[element]);
   return view;
 }

@@ -289,9 +289,13 @@ TEST_CASE("in strict runs an access past the range of a descriptor is a fault th
       outcome_of(script((near + far).c_str(), "EXPECT x IDX 0 EQ 4 2\nEXPECT x IDX 252 EQ 64 0 66\n"));
   CHECK(robust.message == "");
   CHECK(robust.exit == Exit::Ok);
-  // When the ranges overlap, the end of the buffer is the limit.
+  // The range ends where it ends, even where another descriptor names what follows, and both see the same
+  // bytes.
   const std::string all = " BIND BUFFER x AS storage DESCRIPTOR_SET 0 BINDING 1\n";
-  CHECK(outcome_of(script((near + all).c_str(), "EXPECT x IDX 0 EQ 5\n"), strict()).exit == Exit::Ok);
+  CHECK(outcome_of(script((near + all).c_str(), "EXPECT x IDX 0 EQ 0 2\n")).exit == Exit::Ok);
+  const Outcome overlapping = outcome_of(script((near + all).c_str(), ""), strict());
+  CHECK(overlapping.exit == Exit::Fault);
+  CHECK(contains(overlapping.message, "0 bytes past the end of 'x, bytes 0 to 16' (16 bytes)"));
 }
 
 TEST_CASE("a buffer bound where the shader declares an image is an error of the script", "[amber]") {
