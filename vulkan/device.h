@@ -1,16 +1,20 @@
 // Holds a device: its memory, its queue, and what the application asked for when it made it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <set>
 #include <string_view>
 
+#include "frontend/cache.h"
 #include "memsys/address_space.h"
+#include "vulkan/clock.h"
 #include "vulkan/instance.h"
 #include "vulkan/queue.h"
 
 struct VkDevice_T : glint::vulkan::Dispatchable {
-  explicit VkDevice_T(VkPhysicalDevice_T& of) : physical(of) {}
+  explicit VkDevice_T(VkPhysicalDevice_T& of) : physical(of), clock(of.gpu) {}
 
   glint::vulkan::Messages& messages() const { return physical.instance.messages; }
   // Returns whether the application asked for a feature by its Vulkan name.
@@ -18,9 +22,13 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
 
   VkPhysicalDevice_T& physical;
   std::mutex mutex;  // A command that is given this device, or its queue, holds it (guard.h).
+  std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
   glint::mem::AddressSpace memory;
+  glint::frontend::ShaderCache shader_cache{{}};  // in memory only
+  VkDeviceSize allocated_bytes = 0;               // of the heap
+  uint32_t buffers_made = 0, shaders_made = 0;    // They give objects names.
+  glint::vulkan::DeviceClock clock;
+  bool is_lost = false;  // A launch did something that ends the device.
   VkQueue_T queue{*this};
 };
-
-struct VkCommandBuffer_T : glint::vulkan::Dispatchable {};

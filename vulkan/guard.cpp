@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
+#include "vulkan/command_buffer.h"
 #include "vulkan/device.h"
 
 namespace glint::vulkan {
@@ -37,6 +38,8 @@ VkResult explain(const char* command, const Messages* messages) {
     throw;
   } catch (const Refusal& refusal) {
     result = refusal.result(), why = refusal.what();
+  } catch (const mem::OutOfMemory& error) {
+    result = VK_ERROR_OUT_OF_DEVICE_MEMORY, why = error.what();
   } catch (const Error& error) {
     result = result_of(error), why = error.what();
   } catch (const std::bad_alloc&) {
@@ -66,8 +69,9 @@ VkResult caught(const char* command, Device* device) {
 VkResult caught(const char* command, Queue* queue) {
   return explain(command, &queue->device.messages());
 }
-VkResult caught(const char* command, CommandBuffer*) {
-  return explain(command, nullptr);
+// Most commands that are recorded have no result. The end of the recording has it.
+VkResult caught(const char* command, CommandBuffer* commands) {
+  return commands->failure = explain(command, &commands->device.messages());
 }
 
 std::unique_lock<std::mutex> lock_of(Device* device) {

@@ -31,6 +31,7 @@ namespace glint::vulkan {
 inline constexpr VkDeviceSize kHeapBytes = VkDeviceSize{16} << 30;
 // An address names its allocation in the upper 32 bits (memsys/address_space.h).
 inline constexpr VkDeviceSize kMaxAllocationBytes = VkDeviceSize{1} << 32;
+inline constexpr uint32_t kAllMemoryTypes = 0b111;
 inline constexpr uint32_t kMaxPushConstantBytes = 256;
 inline constexpr VkDeviceSize kHostPointerAlignment = 4096;
 

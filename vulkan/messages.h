@@ -16,6 +16,8 @@ namespace glint::vulkan {
 class Refusal : public std::runtime_error {
  public:
   Refusal(VkResult result, const std::string& why) : std::runtime_error(why), result_(result) {}
+  // The application breaks a rule that has no result of its own.
+  explicit Refusal(const std::string& why) : Refusal(VK_ERROR_VALIDATION_FAILED_EXT, why) {}
   VkResult result() const { return result_; }
 
  private:

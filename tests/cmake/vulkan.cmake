@@ -1,10 +1,16 @@
 # Adds the tests of the Vulkan driver. Those that need a package which is not installed say so and skip.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME vulkan_entry_table COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/entry_table_test.py ${PROJECT_SOURCE_DIR})
-if(TARGET glint_vulkan)
+find_library(VULKAN_LOADER vulkan)
+if(TARGET glint_vulkan AND VULKAN_LOADER)
   set(manifest ${PROJECT_BINARY_DIR}/glint_icd.json)
-  foreach(name vulkaninfo)
-    add_test(NAME vulkan_${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/${name}_test.py ${manifest} ${PROJECT_SOURCE_DIR})
+  # The client links the compiler, and with it glslang, that the driver has in it too.
+  glint_test(vulkan LINKS glint::frontend ${VULKAN_LOADER}
+    SOURCES vulkan/client.cpp vulkan/compute_test.cpp vulkan/queue_test.cpp vulkan/wrong_use_test.cpp)
+  add_dependencies(test_vulkan glint_vulkan)
+  set_tests_properties(vulkan PROPERTIES ENVIRONMENT "VK_DRIVER_FILES=${manifest};VK_ICD_FILENAMES=${manifest}")
+  foreach(name vulkaninfo client)
+    add_test(NAME vulkan_${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/${name}_test.py ${manifest} ${PROJECT_SOURCE_DIR} $<TARGET_FILE:test_vulkan>)
     set_tests_properties(vulkan_${name} PROPERTIES SKIP_RETURN_CODE 77)
   endforeach()
 endif()

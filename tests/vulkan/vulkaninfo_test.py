@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: vulkaninfo_test.py MANIFEST SOURCE_DIR"""
 import json
+import sys
 
 import vulkan_case
 from vulkan_case import MANIFEST, VulkanTest
@@ -21,6 +22,20 @@ class VulkanInfo(VulkanTest):
         names = [line.split()[-1] for line in listed.stdout.splitlines()]
         self.assertEqual(sorted(names), ["vk_icdGetInstanceProcAddr", "vk_icdGetPhysicalDeviceProcAddr",
                                          "vk_icdNegotiateLoaderICDInterfaceVersion"])
+
+    def test_the_library_can_be_closed_and_opened_again(self):
+        library = json.loads(MANIFEST.read_text())["ICD"]["library_path"]
+        script = f"""
+import _ctypes, ctypes
+for _ in range(5):
+    library = ctypes.CDLL({library!r})
+    version = ctypes.c_uint32(99)
+    assert library.vk_icdNegotiateLoaderICDInterfaceVersion(ctypes.byref(version)) == 0 and version.value == 5
+    _ctypes.dlclose(library._handle)
+    assert "libglint_vulkan" not in open("/proc/self/maps").read()
+"""
+        result = self.run_on_glint(sys.executable, "-c", script)
+        self.assertEqual(result.returncode, 0, result.stderr)
 
 
 vulkan_case.need("vulkaninfo", "vulkan-tools")

@@ -1,0 +1,22 @@
+# Runs the tests of the client program on another driver.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: client_test.py MANIFEST SOURCE_DIR CLIENT"""
+import pathlib
+import sys
+
+import vulkan_case
+from vulkan_case import VulkanTest
+
+CLIENT = pathlib.Path(sys.argv[3]).resolve()
+LAVAPIPE = next(pathlib.Path("/usr/share/vulkan/icd.d").glob("lvp_icd*.json"), None)
+
+
+class Client(VulkanTest):
+    def test_lavapipe_computes_the_same(self):
+        if not LAVAPIPE:
+            self.skipTest("lavapipe is not installed (package mesa-vulkan-drivers)")
+        result = self.run_on_glint(CLIENT, "[portable]", VK_DRIVER_FILES=str(LAVAPIPE), VK_ICD_FILENAMES=str(LAVAPIPE))
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+
+vulkan_case.main()

@@ -1,0 +1,139 @@
+// Tests that wrong use, faults and endless shaders give results and messages, and leave the application
+// alive.
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
+#include "tests/support/catch.h"
+#include "tests/vulkan/client.h"
+
+namespace glint::test {
+namespace {
+
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+const std::string kHead =
+    "#version 460\nlayout(local_size_x = 64) in;\n"
+    "layout(set = 0, binding = 0) buffer A { uint a[]; };\n";
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string out;
+  for (const std::string& each : texts) out += each + "\n";
+  return out;
+}
+
+TEST_CASE("an access past a buffer is said with its GLSL line, and the application goes on") {
+  Client client;
+  const MappedBuffer out = client.buffer(256);
+  const ComputePipeline pipeline =
+      client.pipeline(kHead + "void main() {\n  a[gl_GlobalInvocationID.x] = 3;\n}\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+
+  REQUIRE(client.dispatch(pipeline, set, {2, 1, 1}) == VK_SUCCESS);
+
+  CHECK(out.as<uint32_t>()[63] == 3);
+  REQUIRE(client.messages.size() == 1);
+  CHECK_THAT(client.messages[0],
+             Catch::Contains("client.comp:5") && Catch::Contains("past the end of 'buffer 1'"));
+}
+
+TEST_CASE("a descriptor's range ends where it says, inside of its buffer") {
+  Client client;
+  const MappedBuffer out = client.buffer(1024);
+  std::memset(out.data, 0, out.bytes);
+  const ComputePipeline pipeline =
+      client.pipeline(kHead + "void main() { a[gl_GlobalInvocationID.x] = 3; }\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 256, 128}});
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+
+  for (uint32_t i = 0; i < 256; ++i) REQUIRE(out.as<uint32_t>()[i] == (i >= 64 && i < 96 ? 3 : 0));
+  CHECK_THAT(joined(client.messages), Catch::Contains("bytes 256 to 384"));
+}
+
+TEST_CASE("with robustBufferAccess the same access is no fault") {
+  Client::Options options;
+  options.features.robustBufferAccess = VK_TRUE;
+  Client client(options);
+  const MappedBuffer out = client.buffer(256);
+  const ComputePipeline pipeline =
+      client.pipeline(kHead + "void main() { a[gl_GlobalInvocationID.x] = 3; }\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+
+  REQUIRE(client.dispatch(pipeline, set, {2, 1, 1}) == VK_SUCCESS);
+  CHECK(client.messages.empty());
+}
+
+TEST_CASE("a shader that does not end loses the device and says where") {
+  Client client;
+  const MappedBuffer out = client.buffer(256);
+  const ComputePipeline pipeline =
+      client.pipeline(kHead + "void main() {\n  while (true) {\n    a[0] += 1;\n  }\n}\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+
+  CHECK(client.dispatch(pipeline, set, {1, 1, 1}) == VK_ERROR_DEVICE_LOST);
+
+  CHECK_THAT(joined(client.messages), Catch::Contains("client.comp:6"));
+  CHECK(vkQueueWaitIdle(client.queue) == VK_ERROR_DEVICE_LOST);
+}
+
+TEST_CASE("a copy that leaves its buffer fails the recording") {
+  Client client;
+  const MappedBuffer from = client.buffer(64), to = client.buffer(64);
+  VkCommandBuffer commands = nullptr;
+  const VkBufferCopy region{32, 0, 64};
+
+  const VkResult end = client.record(
+      commands, [&](VkCommandBuffer into) { vkCmdCopyBuffer(into, from.buffer, to.buffer, 1, &region); });
+
+  CHECK(end == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK_THAT(joined(client.messages),
+             Catch::Contains("vkCmdCopyBuffer: 64 bytes from byte 32 on leave buffer 1"));
+}
+
+TEST_CASE("more memory than the heap has is refused, and the rest stays usable") {
+  Client client;
+  std::vector<VkDeviceMemory> all;
+  VkResult result = VK_SUCCESS;
+  while (result == VK_SUCCESS && all.size() < 100) {
+    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, VkDeviceSize{3} << 30, 0};
+    all.push_back(nullptr);
+    result = vkAllocateMemory(client.device, &info, nullptr, &all.back());
+  }
+
+  CHECK(result == VK_ERROR_OUT_OF_DEVICE_MEMORY);
+  CHECK(all.size() == 6);  // 16 GiB hold five of 3 GiB.
+  all.pop_back();
+  for (const VkDeviceMemory each : all) vkFreeMemory(client.device, each, nullptr);
+  CHECK(client.buffer(64).data != nullptr);
+}
+
+TEST_CASE("a feature that is not announced is refused by name") {
+  Client::Options options;
+  options.features.geometryShader = VK_TRUE;
+  CHECK_THROWS_WITH(Client(options), Catch::Contains("vkCreateDevice returned -8"));
+}
+
+TEST_CASE("what a shader prints reaches the messenger") {
+  Client client;
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\n#extension GL_EXT_debug_printf : require\nlayout(local_size_x = 2) in;\n"
+      "void main() { debugPrintfEXT(\"thread %u\", gl_LocalInvocationIndex); }\n",
+      {{}});
+
+  REQUIRE(client.dispatch(pipeline, nullptr, {1, 1, 1}) == VK_SUCCESS);
+
+  CHECK(client.prints == "thread 0\nthread 1\n");
+}
+
+TEST_CASE("instances and devices come and go a hundred times", "[portable]") {
+  for (int i = 0; i < 100; ++i) {
+    Client client;
+    const MappedBuffer out = client.buffer(64);
+    REQUIRE(client.run([&](VkCommandBuffer commands) {
+      vkCmdFillBuffer(commands, out.buffer, 0, VK_WHOLE_SIZE, uint32_t(i));
+    }) == VK_SUCCESS);
+    REQUIRE(out.as<uint32_t>()[15] == uint32_t(i));
+  }
+}
+
+}  // namespace
+}  // namespace glint::test

@@ -1,0 +1,103 @@
+// Makes buffers and binds them to memory.
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <memory>
+
+#include "vulkan/chain.h"
+#include "vulkan/device.h"
+#include "vulkan/memory.h"
+
+namespace glint::vulkan {
+namespace {
+
+constexpr VkDeviceSize kAlignment = mem::AddressSpace::kWindowAlignment;
+
+VkMemoryRequirements requirements_of(VkDeviceSize bytes) {
+  return {(bytes + kAlignment - 1) / kAlignment * kAlignment, kAlignment, kAllMemoryTypes};
+}
+
+void answer(VkMemoryRequirements2* out, VkDeviceSize bytes) {
+  out->memoryRequirements = requirements_of(bytes);
+  if (auto* dedicated =
+          find_in_output<VkMemoryDedicatedRequirements>(out, VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS))
+    dedicated->prefersDedicatedAllocation = dedicated->requiresDedicatedAllocation = VK_FALSE;
+}
+
+}  // namespace
+
+HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range) {
+  if (!buffer->address) throw Refusal(fmt::format("{} is not bound to memory", buffer->name));
+  if (offset > buffer->bytes || (range != VK_WHOLE_SIZE && range > buffer->bytes - offset))
+    throw Refusal(fmt::format("{} bytes from byte {} on leave {}, which has {} bytes", range, offset,
+                              buffer->name, buffer->bytes));
+  return {device.memory.data(buffer->memory->backing) + buffer->offset + offset,
+          range == VK_WHOLE_SIZE ? buffer->bytes - offset : range};
+}
+
+Address address_of_part(Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize bytes) {
+  bytes_of(device, buffer, offset, bytes);
+  if (offset + bytes == buffer->bytes) return buffer->address + offset;
+  const auto [found, is_new] = buffer->parts.try_emplace({offset, bytes}, 0);
+  if (is_new)
+    found->second =
+        device.memory.open_window(fmt::format("{}, bytes {} to {}", buffer->name, offset, offset + bytes),
+                                  buffer->memory->backing, buffer->offset + offset, bytes);
+  return found->second;
+}
+
+VkResult CreateBuffer(Device& device, const VkBufferCreateInfo* info, VkBuffer* out) {
+  if (info->flags & (VK_BUFFER_CREATE_SPARSE_BINDING_BIT | VK_BUFFER_CREATE_PROTECTED_BIT))
+    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse and protected buffers are not there");
+  if (info->size > kMaxAllocationBytes)
+    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                  fmt::format("a buffer has at most {} bytes, not {}", kMaxAllocationBytes, info->size));
+  auto made = std::make_unique<Buffer>();
+  made->bytes = info->size, made->usage = info->usage;
+  made->name = fmt::format("buffer {}", ++device.buffers_made);
+  *out = made.release();
+  return VK_SUCCESS;
+}
+
+void DestroyBuffer(Device& device, VkBuffer buffer) {
+  if (!buffer) return;
+  for (const auto& [place, address] : buffer->parts) device.memory.free(address);
+  if (buffer->address) device.memory.free(buffer->address);
+  delete buffer;
+}
+
+VkResult BindBufferMemory(Device& device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset) {
+  if (offset % kAlignment || offset > memory->bytes || buffer->bytes > memory->bytes - offset)
+    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                  fmt::format("{} ({} bytes) does not fit at byte {} of {} bytes of memory", buffer->name,
+                              buffer->bytes, offset, memory->bytes));
+  buffer->address = device.memory.open_window(buffer->name, memory->backing, offset, buffer->bytes);
+  buffer->memory = memory, buffer->offset = offset;
+  return VK_SUCCESS;
+}
+
+VkResult BindBufferMemory2(Device& device, uint32_t count, const VkBindBufferMemoryInfo* infos) {
+  for (uint32_t i = 0; i < count; ++i)
+    BindBufferMemory(device, infos[i].buffer, infos[i].memory, infos[i].memoryOffset);
+  return VK_SUCCESS;
+}
+
+void GetBufferMemoryRequirements(Device&, VkBuffer buffer, VkMemoryRequirements* out) {
+  *out = requirements_of(buffer->bytes);
+}
+void GetBufferMemoryRequirements2(Device&, const VkBufferMemoryRequirementsInfo2* info,
+                                  VkMemoryRequirements2* out) {
+  answer(out, info->buffer->bytes);
+}
+void GetDeviceBufferMemoryRequirements(Device&, const VkDeviceBufferMemoryRequirements* info,
+                                       VkMemoryRequirements2* out) {
+  answer(out, info->pCreateInfo->size);
+}
+
+VkDeviceAddress GetBufferDeviceAddress(Device&, const VkBufferDeviceAddressInfo* info) {
+  return info->buffer->address;
+}
+uint64_t GetBufferOpaqueCaptureAddress(Device&, const VkBufferDeviceAddressInfo*) {
+  return 0;
+}
+
+}  // namespace glint::vulkan

@@ -1,0 +1,162 @@
+// Writes and copies descriptors.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/descriptor_set.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "vulkan/chain.h"
+#include "vulkan/device.h"
+
+namespace glint::vulkan {
+namespace {
+
+// Walks the descriptors of a set from one element of a binding on, and from a binding's end into the next
+// binding.
+class Cursor {
+ public:
+  Cursor(DescriptorSet& set, uint32_t binding, uint32_t element)
+      : set_(set), at_(set.layout.bindings.find(binding)), element_(element) {
+    if (at_ == set.layout.bindings.end())
+      throw Refusal(fmt::format("the layout of a descriptor set has no binding {}", binding));
+    skip_full();
+  }
+  const LayoutBinding& binding() const { return at_->second; }
+  Descriptor& next() {
+    skip_full();
+    return set_.descriptors.at(binding().first + element_++);
+  }
+  // Returns whether the sampler of the descriptor that next() returned last is the layout's.
+  bool has_immutable_sampler() const { return !binding().immutable.empty(); }
+
+ private:
+  void skip_full() {
+    while (at_ != set_.layout.bindings.end() && element_ >= binding().count) {
+      element_ -= binding().count;
+      ++at_;
+    }
+    if (at_ == set_.layout.bindings.end())
+      throw Refusal("more descriptors are written than the layout of the set has");
+  }
+
+  DescriptorSet& set_;
+  std::map<uint32_t, LayoutBinding>::iterator at_;
+  uint32_t element_;
+};
+
+void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
+  Descriptor& to = cursor.next();
+  switch (type) {
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC: {
+      const auto& from = *static_cast<const VkDescriptorBufferInfo*>(info);
+      to.buffer = from.buffer, to.offset = from.offset, to.range = from.range;
+      return;
+    }
+    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+    case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+      to.texels = *static_cast<const VkBufferView*>(info);
+      return;
+    default:
+      break;
+  }
+  const auto& from = *static_cast<const VkDescriptorImageInfo*>(info);
+  if (type != VK_DESCRIPTOR_TYPE_SAMPLER) to.view = from.imageView;
+  const bool has_sampler =
+      type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  if (has_sampler && !cursor.has_immutable_sampler()) to.sampler = from.sampler;
+}
+
+// Writes bytes of an inline uniform block.
+void write_inline(Device& device, DescriptorSet& set, uint32_t binding, uint32_t first, uint32_t bytes,
+                  const void* from) {
+  const auto block = set.inline_blocks.find(binding);
+  if (block == set.inline_blocks.end() || first + bytes > set.layout.bindings.at(binding).count)
+    throw Refusal(fmt::format("binding {} has no {} inline bytes at byte {}", binding, bytes, first));
+  device.memory.write(block->second + first, from, bytes);
+}
+
+void copy(Device& device, const VkCopyDescriptorSet& info) {
+  if (info.srcSet->inline_blocks.count(info.srcBinding)) {
+    const Address from = info.srcSet->inline_blocks.at(info.srcBinding) + info.srcArrayElement;
+    if (const std::byte* const bytes = device.memory.find(from, info.descriptorCount))
+      write_inline(device, *info.dstSet, info.dstBinding, info.dstArrayElement, info.descriptorCount, bytes);
+    return;
+  }
+  Cursor from(*info.srcSet, info.srcBinding, info.srcArrayElement);
+  Cursor to(*info.dstSet, info.dstBinding, info.dstArrayElement);
+  for (uint32_t i = 0; i < info.descriptorCount; ++i) {
+    Descriptor taken = from.next();
+    Descriptor& written = to.next();
+    if (to.has_immutable_sampler()) taken.sampler = written.sampler;
+    written = taken;
+  }
+}
+
+bool is_buffer(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
+         type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC ||
+         type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+}
+bool is_texel_buffer(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+}
+
+}  // namespace
+
+void write(Device& device, DescriptorSet& set, const VkWriteDescriptorSet& from) {
+  if (from.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) {
+    const auto* block = find_in_chain<VkWriteDescriptorSetInlineUniformBlock>(
+        &from, VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_INLINE_UNIFORM_BLOCK);
+    if (block)
+      write_inline(device, set, from.dstBinding, from.dstArrayElement, block->dataSize, block->pData);
+    return;
+  }
+  Cursor cursor(set, from.dstBinding, from.dstArrayElement);
+  for (uint32_t i = 0; i < from.descriptorCount; ++i) {
+    const void* const info = is_buffer(from.descriptorType) ? static_cast<const void*>(from.pBufferInfo + i)
+                             : is_texel_buffer(from.descriptorType)
+                                 ? from.pTexelBufferView + i
+                                 : static_cast<const void*>(from.pImageInfo + i);
+    write_one(cursor, from.descriptorType, info);
+  }
+}
+
+void write(Device& device, DescriptorSet& set, const VkDescriptorUpdateTemplate_T& with, const void* data) {
+  for (const VkDescriptorUpdateTemplateEntry& entry : with.entries) {
+    const auto* from = static_cast<const std::byte*>(data) + entry.offset;
+    if (entry.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) {
+      write_inline(device, set, entry.dstBinding, entry.dstArrayElement, entry.descriptorCount, from);
+      continue;
+    }
+    Cursor cursor(set, entry.dstBinding, entry.dstArrayElement);
+    for (uint32_t i = 0; i < entry.descriptorCount; ++i)
+      write_one(cursor, entry.descriptorType, from + i * entry.stride);
+  }
+}
+
+void UpdateDescriptorSets(Device& device, uint32_t writes, const VkWriteDescriptorSet* write_infos,
+                          uint32_t copies, const VkCopyDescriptorSet* copy_infos) {
+  for (uint32_t i = 0; i < writes; ++i) write(device, *write_infos[i].dstSet, write_infos[i]);
+  for (uint32_t i = 0; i < copies; ++i) copy(device, copy_infos[i]);
+}
+
+VkResult CreateDescriptorUpdateTemplate(Device&, const VkDescriptorUpdateTemplateCreateInfo* info,
+                                        VkDescriptorUpdateTemplate* out) {
+  *out = new VkDescriptorUpdateTemplate_T{
+      {info->pDescriptorUpdateEntries, info->pDescriptorUpdateEntries + info->descriptorUpdateEntryCount},
+      info->set};
+  return VK_SUCCESS;
+}
+void DestroyDescriptorUpdateTemplate(Device&, VkDescriptorUpdateTemplate with) {
+  delete with;
+}
+void UpdateDescriptorSetWithTemplate(Device& device, VkDescriptorSet set, VkDescriptorUpdateTemplate with,
+                                     const void* data) {
+  write(device, *set, *with, data);
+}
+
+}  // namespace glint::vulkan

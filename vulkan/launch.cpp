@@ -1,0 +1,70 @@
+// Runs a launch on the simulated GPU with what a command buffer has bound.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/launch.h"
+
+#include <fmt/format.h>
+#include <string>
+#include <vector>
+
+#include "exec/print_log.h"
+#include "pipeline/launch_builder.h"
+#include "pipeline/render.h"
+#include "vulkan/bound_descriptors.h"
+#include "vulkan/device.h"
+#include "vulkan/pipeline.h"
+
+namespace glint::vulkan {
+namespace {
+
+// Says what the shader printed, and the faults that were let pass.
+void say_results(const Queue& queue, const std::string& pipeline, const exec::FaultLog& faults,
+                 exec::PrintLog& prints) {
+  const Messages& messages = queue.device.messages();
+  if (const std::string text = prints.take(); !text.empty()) messages.info(text);
+  if (faults.empty()) return;
+  const std::string label = queue.labels.empty() ? "" : fmt::format(", label '{}'", queue.labels.back());
+  messages.warning(fmt::format("launch of {}{}:\n{}", pipeline, label, faults.to_string()));
+}
+
+// Frees what the builder has allocated, also when the launch ends with an exception.
+class Allocations {
+ public:
+  Allocations(mem::AddressSpace& memory, const pipeline::LaunchBuilder& builder)
+      : memory_(memory), builder_(builder) {}
+  ~Allocations() {
+    for (const Address each : builder_.allocations()) memory_.free(each);
+  }
+  Allocations(const Allocations&) = delete;
+  Allocations& operator=(const Allocations&) = delete;
+
+ private:
+  mem::AddressSpace& memory_;
+  const pipeline::LaunchBuilder& builder_;
+};
+
+}  // namespace
+
+void launch(Queue& queue, const Bindings& bound, const std::array<uint32_t, 3>& base,
+            const std::array<uint32_t, 3>& groups) {
+  if (!groups[0] || !groups[1] || !groups[2]) return;
+  Device& device = queue.device;
+  const pipeline::LinkedShaders& shaders = bound.pipeline->compiled(device);
+  pipeline::LaunchBuilder builder(shaders, device.memory);
+  const Allocations allocations(device.memory, builder);
+  for (const auto& [place, use] : shaders.declared()) bind(device, builder, bound, use);
+  builder.set_push_constants(bound.push_constants);
+  builder.set_blocks(0, groups, {bound.pipeline->name, 0, 0});
+  exec::set_first_block(builder.world, base);
+  exec::PrintLog prints;
+  builder.world.prints = &prints;
+  builder.world.robust_buffers = device.has("robustBufferAccess");
+  builder.world.robust_images = device.has("robustImageAccess");
+  // Choice: without robust access a fault is said and let pass, as a GPU's driver does not stop either.
+  builder.world.on_fault = exec::OnFault::Warn;
+  const pipeline::RenderResult result =
+      pipeline::run_world(builder.finish(), device.physical.gpu, false, false, 1, {});
+  device.clock.add_launch(result.warp_instructions);
+  say_results(queue, bound.pipeline->name, result.faults, prints);
+}
+
+}  // namespace glint::vulkan

@@ -1,0 +1,86 @@
+// Allocates, maps and frees device memory.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/memory.h"
+
+#include <fmt/format.h>
+#include <memory>
+
+#include "vulkan/chain.h"
+#include "vulkan/device.h"
+
+namespace glint::vulkan {
+namespace {
+
+void import_or_allocate(Device& device, DeviceMemory& memory, const VkMemoryAllocateInfo* info) {
+  if (const auto* host = find_in_chain<VkImportMemoryHostPointerInfoEXT>(
+          info, VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT);
+      host && host->handleType) {
+    if (reinterpret_cast<uintptr_t>(host->pHostPointer) % kHostPointerAlignment ||
+        memory.bytes % kHostPointerAlignment)
+      throw Refusal(
+          VK_ERROR_INVALID_EXTERNAL_HANDLE,
+          fmt::format("an imported pointer and its size are multiples of {}", kHostPointerAlignment));
+    memory.is_imported = true;
+    memory.backing = device.memory.import_backing(static_cast<std::byte*>(host->pHostPointer), memory.bytes);
+    return;
+  }
+  if (memory.bytes > kMaxAllocationBytes || memory.bytes > kHeapBytes - device.allocated_bytes)
+    throw Refusal(
+        VK_ERROR_OUT_OF_DEVICE_MEMORY,
+        fmt::format("{} bytes do not fit: {} of {} bytes are allocated, and an allocation has at most {}",
+                    memory.bytes, device.allocated_bytes, kHeapBytes, kMaxAllocationBytes));
+  memory.backing = device.memory.add_backing(memory.bytes);
+  device.allocated_bytes += memory.bytes;
+}
+
+}  // namespace
+
+VkResult AllocateMemory(Device& device, const VkMemoryAllocateInfo* info, VkDeviceMemory* out) {
+  auto made = std::make_unique<DeviceMemory>();
+  made->bytes = info->allocationSize;
+  import_or_allocate(device, *made, info);
+  *out = made.release();
+  return VK_SUCCESS;
+}
+
+void FreeMemory(Device& device, VkDeviceMemory memory) {
+  if (!memory) return;
+  device.memory.free(memory->backing);
+  if (!memory->is_imported) device.allocated_bytes -= memory->bytes;
+  delete memory;
+}
+
+VkResult MapMemory(Device& device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize, VkMemoryMapFlags,
+                   void** out) {
+  if (offset >= memory->bytes)
+    throw Refusal(VK_ERROR_MEMORY_MAP_FAILED,
+                  fmt::format("offset {} is outside of the {} bytes", offset, memory->bytes));
+  *out = device.memory.data(memory->backing) + offset;
+  return VK_SUCCESS;
+}
+
+// Simulated memory is the host's, so nothing has to be flushed or invalidated.
+void UnmapMemory(Device&, VkDeviceMemory) {
+}
+VkResult FlushMappedMemoryRanges(Device&, uint32_t, const VkMappedMemoryRange*) {
+  return VK_SUCCESS;
+}
+VkResult InvalidateMappedMemoryRanges(Device&, uint32_t, const VkMappedMemoryRange*) {
+  return VK_SUCCESS;
+}
+
+void GetDeviceMemoryCommitment(Device&, VkDeviceMemory memory, VkDeviceSize* out) {
+  *out = memory->bytes;
+}
+
+uint64_t GetDeviceMemoryOpaqueCaptureAddress(Device&, const VkDeviceMemoryOpaqueCaptureAddressInfo*) {
+  return 0;
+}
+
+VkResult GetMemoryHostPointerPropertiesEXT(Device&, VkExternalMemoryHandleTypeFlagBits, const void*,
+                                           VkMemoryHostPointerPropertiesEXT* out) {
+  out->memoryTypeBits = kAllMemoryTypes;
+  return VK_SUCCESS;
+}
+
+}  // namespace glint::vulkan

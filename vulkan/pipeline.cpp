@@ -1,0 +1,126 @@
+// Makes shader modules, pipeline layouts, pipeline caches and compute pipelines.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/pipeline.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "isa/program.h"
+#include "vulkan/chain.h"
+#include "vulkan/device.h"
+
+namespace glint::vulkan {
+namespace {
+
+std::shared_ptr<const std::vector<uint32_t>> words_of(const VkShaderModuleCreateInfo& info) {
+  if (info.codeSize % sizeof(uint32_t) || info.codeSize < 5 * sizeof(uint32_t))
+    throw Refusal(fmt::format("{} bytes are not a SPIR-V module", info.codeSize));
+  return std::make_shared<const std::vector<uint32_t>>(info.pCode,
+                                                       info.pCode + info.codeSize / sizeof(uint32_t));
+}
+
+std::map<uint32_t, uint64_t> constants_of(const VkSpecializationInfo* info) {
+  std::map<uint32_t, uint64_t> out;
+  for (uint32_t i = 0; info && i < info->mapEntryCount; ++i) {
+    const VkSpecializationMapEntry& entry = info->pMapEntries[i];
+    uint64_t value = 0;
+    if (entry.size > sizeof value || entry.offset + entry.size > info->dataSize)
+      throw Refusal(fmt::format("specialisation constant {} lies outside of its data", entry.constantID));
+    std::memcpy(&value, static_cast<const std::byte*>(info->pData) + entry.offset, entry.size);
+    out[entry.constantID] = value;
+  }
+  return out;
+}
+
+std::unique_ptr<VkPipeline_T> pipeline_of(Device& device, const VkComputePipelineCreateInfo& info) {
+  auto made = std::make_unique<VkPipeline_T>();
+  if (info.stage.module) {
+    made->words = info.stage.module->words, made->name = info.stage.module->name;
+  } else if (const auto* module = find_in_chain<VkShaderModuleCreateInfo>(
+                 &info.stage, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
+    made->words = words_of(*module), made->name = fmt::format("shader {}", ++device.shaders_made);
+  } else {
+    throw Refusal("a pipeline needs a shader module");
+  }
+  made->entry_point = info.stage.pName;
+  made->constants = constants_of(info.stage.pSpecializationInfo);
+  made->layout = *info.layout;
+  return made;
+}
+
+}  // namespace
+
+VkResult CreateShaderModule(Device& device, const VkShaderModuleCreateInfo* info, VkShaderModule* out) {
+  *out = new VkShaderModule_T{words_of(*info), fmt::format("shader {}", ++device.shaders_made)};
+  return VK_SUCCESS;
+}
+void DestroyShaderModule(Device&, VkShaderModule module) {
+  delete module;
+}
+
+VkResult CreatePipelineLayout(Device&, const VkPipelineLayoutCreateInfo* info, VkPipelineLayout* out) {
+  if (info->setLayoutCount > isa::kMaxSets)
+    throw Refusal(fmt::format("{} sets are more than {}", info->setLayoutCount, isa::kMaxSets));
+  auto made = std::make_unique<VkPipelineLayout_T>();
+  for (uint32_t i = 0; i < info->setLayoutCount; ++i)
+    made->sets.push_back(info->pSetLayouts[i] ? *info->pSetLayouts[i] : DescriptorSetLayout{});
+  *out = made.release();
+  return VK_SUCCESS;
+}
+void DestroyPipelineLayout(Device&, VkPipelineLayout layout) {
+  delete layout;
+}
+
+VkResult CreateComputePipelines(Device& device, VkPipelineCache, uint32_t count,
+                                const VkComputePipelineCreateInfo* infos, VkPipeline* out) {
+  std::fill_n(out, count, VkPipeline{});
+  for (uint32_t i = 0; i < count; ++i) out[i] = pipeline_of(device, infos[i]).release();
+  return VK_SUCCESS;
+}
+void DestroyPipeline(Device&, VkPipeline pipeline) {
+  delete pipeline;
+}
+
+// Choice: pipelines are compiled when they run, and the driver keeps what it compiled itself. So an
+// application's cache holds nothing but the header that Vulkan asks for.
+VkResult CreatePipelineCache(Device&, const VkPipelineCacheCreateInfo*, VkPipelineCache* out) {
+  *out = new VkPipelineCache_T;
+  return VK_SUCCESS;
+}
+void DestroyPipelineCache(Device&, VkPipelineCache cache) {
+  delete cache;
+}
+VkResult MergePipelineCaches(Device&, VkPipelineCache, uint32_t, const VkPipelineCache*) {
+  return VK_SUCCESS;
+}
+VkResult GetPipelineCacheData(Device& device, VkPipelineCache, size_t* bytes, void* out) {
+  VkPipelineCacheHeaderVersionOne header{sizeof header,
+                                         VK_PIPELINE_CACHE_HEADER_VERSION_ONE,
+                                         device.physical.core.vendorID,
+                                         device.physical.core.deviceID,
+                                         {}};
+  std::copy_n(device.physical.core.pipelineCacheUUID, VK_UUID_SIZE, header.pipelineCacheUUID);
+  const bool fits = out && *bytes >= sizeof header;
+  if (fits) std::memcpy(out, &header, sizeof header);
+  *bytes = out && !fits ? 0 : sizeof header;
+  return out && !fits ? VK_INCOMPLETE : VK_SUCCESS;
+}
+
+}  // namespace glint::vulkan
+
+const glint::pipeline::LinkedShaders& VkPipeline_T::compiled(VkDevice_T& device) {
+  using namespace glint;
+  if (compiled_) return *compiled_;
+  const pipeline::GpuParams& gpu = device.physical.gpu;
+  Diagnostics notes;
+  // Choice: the driver does not validate modules. The validation layer does, where the application asks for
+  // it.
+  const pipeline::CompiledStage stage =
+      pipeline::compile_stage(*words, {name, entry_point, constants, frontend::Validity::Known}, gpu.compiler,
+                              notes, &device.shader_cache);
+  compiled_ = std::make_unique<const pipeline::LinkedShaders>(
+      std::vector{stage.program}, stage.reflection.bindings, gpu, &device.shader_cache);
+  return *compiled_;
+}

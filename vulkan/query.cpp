@@ -1,0 +1,118 @@
+// Holds query pools: timestamps, which the device's clock gives.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+#include <optional>
+#include <vector>
+
+#include "vulkan/command_buffer.h"
+#include "vulkan/device.h"
+#include "vulkan/memory.h"
+
+struct VkQueryPool_T {
+  std::vector<std::optional<uint64_t>> values;  // nothing: not available
+};
+
+namespace glint::vulkan {
+namespace {
+
+void check_range(VkQueryPool pool, uint32_t first, uint32_t count) {
+  if (first > pool->values.size() || count > pool->values.size() - first)
+    throw Refusal(
+        fmt::format("queries {} to {} are not in a pool of {}", first, first + count, pool->values.size()));
+}
+
+template <class Number>
+void put(std::byte* to, uint32_t index, uint64_t value) {
+  const auto number = Number(value);
+  std::memcpy(to + index * sizeof number, &number, sizeof number);
+}
+
+// Writes results as vkGetQueryPoolResults says. Returns whether all were available.
+template <class Number>
+bool write_results(const VkQueryPool_T& pool, uint32_t first, uint32_t count, std::byte* to,
+                   VkDeviceSize stride, VkQueryResultFlags flags) {
+  bool all = true;
+  for (uint32_t i = 0; i < count; ++i, to += stride) {
+    const std::optional<uint64_t>& value = pool.values[first + i];
+    all = all && value;
+    if (value || (flags & VK_QUERY_RESULT_PARTIAL_BIT)) put<Number>(to, 0, value.value_or(0));
+    if (flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) put<Number>(to, 1, value.has_value());
+  }
+  return all;
+}
+
+bool write_results(const VkQueryPool_T& pool, uint32_t first, uint32_t count, std::byte* to,
+                   VkDeviceSize stride, VkQueryResultFlags flags) {
+  return flags & VK_QUERY_RESULT_64_BIT ? write_results<uint64_t>(pool, first, count, to, stride, flags)
+                                        : write_results<uint32_t>(pool, first, count, to, stride, flags);
+}
+
+void reset(VkQueryPool pool, uint32_t first, uint32_t count) {
+  std::fill_n(pool->values.begin() + first, count, std::nullopt);
+}
+
+}  // namespace
+
+VkResult CreateQueryPool(Device&, const VkQueryPoolCreateInfo* info, VkQueryPool* out) {
+  if (info->queryType != VK_QUERY_TYPE_TIMESTAMP)
+    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "only timestamps can be queried");
+  *out = new VkQueryPool_T{std::vector<std::optional<uint64_t>>(info->queryCount)};
+  return VK_SUCCESS;
+}
+void DestroyQueryPool(Device&, VkQueryPool pool) {
+  delete pool;
+}
+
+void ResetQueryPool(Device&, VkQueryPool pool, uint32_t first, uint32_t count) {
+  check_range(pool, first, count);
+  reset(pool, first, count);
+}
+
+VkResult GetQueryPoolResults(Device& device, VkQueryPool pool, uint32_t first, uint32_t count, size_t bytes,
+                             void* out, VkDeviceSize stride, VkQueryResultFlags flags) {
+  check_range(pool, first, count);
+  const VkDeviceSize number = flags & VK_QUERY_RESULT_64_BIT ? 8 : 4;
+  const VkDeviceSize each = flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT ? 2 * number : number;
+  if (count && (count - 1) * stride + each > bytes)
+    throw Refusal(fmt::format("{} results do not fit into {} bytes", count, bytes));
+  const auto is_there = [&] {
+    return std::all_of(pool->values.begin() + first, pool->values.begin() + first + count,
+                       [](const auto& value) { return value.has_value(); });
+  };
+  device.queue.advance();
+  if (flags & VK_QUERY_RESULT_WAIT_BIT)
+    device.changed.wait(device.mutex, [&] { return device.is_lost || is_there(); });
+  if (device.is_lost) return VK_ERROR_DEVICE_LOST;
+  const bool all = write_results(*pool, first, count, static_cast<std::byte*>(out), stride, flags);
+  return all ? VK_SUCCESS : VK_NOT_READY;
+}
+
+void CmdResetQueryPool(CommandBuffer& commands, VkQueryPool pool, uint32_t first, uint32_t count) {
+  check_range(pool, first, count);
+  commands.record([=](Queue&) { reset(pool, first, count); });
+}
+
+void CmdWriteTimestamp(CommandBuffer& commands, VkPipelineStageFlagBits, VkQueryPool pool, uint32_t query) {
+  check_range(pool, query, 1);
+  commands.record([=](Queue& queue) { pool->values[query] = queue.device.clock.now(); });
+}
+void CmdWriteTimestamp2(CommandBuffer& commands, VkPipelineStageFlags2, VkQueryPool pool, uint32_t query) {
+  CmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool, query);
+}
+
+void CmdCopyQueryPoolResults(CommandBuffer& commands, VkQueryPool pool, uint32_t first, uint32_t count,
+                             VkBuffer buffer, VkDeviceSize offset, VkDeviceSize stride,
+                             VkQueryResultFlags flags) {
+  check_range(pool, first, count);
+  const VkDeviceSize number = flags & VK_QUERY_RESULT_64_BIT ? 8 : 4;
+  const VkDeviceSize each = flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT ? 2 * number : number;
+  const VkDeviceSize bytes = count ? (count - 1) * stride + each : 0;
+  bytes_of(commands.device, buffer, offset, bytes);
+  commands.record([=](Queue& queue) {
+    write_results(*pool, first, count, bytes_of(queue.device, buffer, offset, bytes).data, stride, flags);
+  });
+}
+
+}  // namespace glint::vulkan

@@ -1,0 +1,135 @@
+// Runs what applications submit, in order, in the calls of the application. There are no threads.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "vulkan/chain.h"
+#include "vulkan/command_buffer.h"
+#include "vulkan/device.h"
+#include "vulkan/sync.h"
+
+using glint::vulkan::Submission;
+
+void VkQueue_T::submit(Submission submission) {
+  pending_.push_back(std::move(submission));
+}
+
+void VkQueue_T::advance() {
+  while (!pending_.empty() && !device.is_lost && run(pending_.front())) pending_.pop_front();
+  if (device.is_lost) pending_.clear();
+  device.changed.notify_all();
+}
+
+bool VkQueue_T::run(Submission& submission) {
+  if (!submission.has_begun) {
+    for (const auto& [semaphore, value] : submission.waits)
+      if (!semaphore->has_reached(value)) return false;
+    for (const auto& [semaphore, value] : submission.waits)
+      if (!semaphore->is_timeline) semaphore->value = 0;
+    submission.has_begun = true;
+  }
+  if (!run_commands(submission)) return false;
+  for (const auto& [semaphore, value] : submission.signals)
+    semaphore->value = semaphore->is_timeline ? value : 1;
+  if (submission.fence) submission.fence->is_signaled = true;
+  return true;
+}
+
+bool VkQueue_T::run_commands(Submission& submission) {
+  try {
+    for (; submission.next < submission.commands.size(); ++submission.next)
+      if (!(*submission.commands[submission.next])(*this)) return false;
+    return true;
+  } catch (...) {
+    device.is_lost = true;
+    throw;
+  }
+}
+
+namespace glint::vulkan {
+namespace {
+
+void add_commands(Submission& to, const CommandBuffer& from) {
+  if (from.state != CommandBuffer::State::Executable)
+    throw Refusal("a command buffer that is submitted was not recorded to its end");
+  to.commands.insert(to.commands.end(), from.commands.begin(), from.commands.end());
+}
+
+Submission submission_of(const VkSubmitInfo& info) {
+  Submission out;
+  const auto* timeline =
+      find_in_chain<VkTimelineSemaphoreSubmitInfo>(&info, VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
+  for (uint32_t i = 0; i < info.waitSemaphoreCount; ++i)
+    out.waits.push_back({info.pWaitSemaphores[i], timeline && i < timeline->waitSemaphoreValueCount
+                                                      ? timeline->pWaitSemaphoreValues[i]
+                                                      : 0});
+  for (uint32_t i = 0; i < info.commandBufferCount; ++i) add_commands(out, *info.pCommandBuffers[i]);
+  for (uint32_t i = 0; i < info.signalSemaphoreCount; ++i)
+    out.signals.push_back({info.pSignalSemaphores[i], timeline && i < timeline->signalSemaphoreValueCount
+                                                          ? timeline->pSignalSemaphoreValues[i]
+                                                          : 0});
+  return out;
+}
+
+Submission submission_of(const VkSubmitInfo2& info) {
+  Submission out;
+  for (uint32_t i = 0; i < info.waitSemaphoreInfoCount; ++i)
+    out.waits.push_back({info.pWaitSemaphoreInfos[i].semaphore, info.pWaitSemaphoreInfos[i].value});
+  for (uint32_t i = 0; i < info.commandBufferInfoCount; ++i)
+    add_commands(out, *info.pCommandBufferInfos[i].commandBuffer);
+  for (uint32_t i = 0; i < info.signalSemaphoreInfoCount; ++i)
+    out.signals.push_back({info.pSignalSemaphoreInfos[i].semaphore, info.pSignalSemaphoreInfos[i].value});
+  return out;
+}
+
+template <class Info>
+VkResult submit(Queue& queue, uint32_t count, const Info* infos, VkFence fence) {
+  if (queue.device.is_lost) return VK_ERROR_DEVICE_LOST;
+  std::vector<Submission> all;
+  for (uint32_t i = 0; i < count; ++i) all.push_back(submission_of(infos[i]));
+  if (fence && all.empty()) all.emplace_back();
+  if (fence) all.back().fence = fence;
+  for (Submission& each : all) queue.submit(std::move(each));
+  queue.advance();
+  return VK_SUCCESS;
+}
+
+VkResult wait_until_idle(Device& device) {
+  device.queue.advance();
+  device.changed.wait(device.mutex, [&] { return device.is_lost || device.queue.is_idle(); });
+  return device.is_lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
+}
+
+}  // namespace
+
+VkResult QueueSubmit(Queue& queue, uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
+  return submit(queue, count, infos, fence);
+}
+VkResult QueueSubmit2(Queue& queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
+  return submit(queue, count, infos, fence);
+}
+VkResult QueueWaitIdle(Queue& queue) {
+  return wait_until_idle(queue.device);
+}
+VkResult DeviceWaitIdle(Device& device) {
+  return wait_until_idle(device);
+}
+// Nothing is sparse, so only semaphores and the fence are left.
+VkResult QueueBindSparse(Queue& queue, uint32_t count, const VkBindSparseInfo* infos, VkFence fence) {
+  std::vector<VkSubmitInfo> submits(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    if (infos[i].bufferBindCount || infos[i].imageBindCount || infos[i].imageOpaqueBindCount)
+      throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse memory is not there");
+    submits[i].sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submits[i].pNext = infos[i].pNext;
+    submits[i].waitSemaphoreCount = infos[i].waitSemaphoreCount;
+    submits[i].pWaitSemaphores = infos[i].pWaitSemaphores;
+    submits[i].signalSemaphoreCount = infos[i].signalSemaphoreCount;
+    submits[i].pSignalSemaphores = infos[i].pSignalSemaphores;
+  }
+  return submit(queue, count, submits.data(), fence);
+}
+
+}  // namespace glint::vulkan

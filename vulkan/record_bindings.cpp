@@ -1,0 +1,64 @@
+// Records what launches find bound: pipelines, descriptor sets and push constants.
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+#include <fmt/format.h>
+
+#include "vulkan/command_buffer.h"
+#include "vulkan/device.h"
+#include "vulkan/pipeline.h"
+
+namespace glint::vulkan {
+namespace {
+
+// Returns the set that is pushed to, as a copy of what was pushed before: earlier launches keep theirs.
+DescriptorSet& pushed_set(CommandBuffer& commands, VkPipelineLayout layout, uint32_t number) {
+  if (number >= layout->sets.size()) throw Refusal(fmt::format("the pipeline layout has no set {}", number));
+  BoundSet& bound = commands.bound.sets[number];
+  bound.pushed = std::make_shared<DescriptorSet>(bound.pushed ? *bound.pushed : set_of(layout->sets[number]));
+  bound.set = bound.pushed.get();
+  return *bound.set;
+}
+
+}  // namespace
+
+void CmdBindPipeline(CommandBuffer& commands, VkPipelineBindPoint point, VkPipeline pipeline) {
+  if (point == VK_PIPELINE_BIND_POINT_COMPUTE) commands.bound.pipeline = pipeline;
+}
+
+void CmdBindDescriptorSets(CommandBuffer& commands, VkPipelineBindPoint point, VkPipelineLayout,
+                           uint32_t first, uint32_t count, const VkDescriptorSet* sets, uint32_t num_offsets,
+                           const uint32_t* offsets) {
+  if (point != VK_PIPELINE_BIND_POINT_COMPUTE) return;
+  const uint32_t* const end = offsets + num_offsets;
+  for (uint32_t i = 0; i < count; ++i) {
+    BoundSet& bound = commands.bound.sets[first + i] = {sets[i], nullptr, {}};
+    if (!sets[i]) continue;
+    const uint32_t dynamic = sets[i]->layout.dynamic;
+    if (dynamic > uint32_t(end - offsets))
+      throw Refusal(
+          fmt::format("set {} has {} dynamic descriptors, and offsets are missing", first + i, dynamic));
+    bound.dynamic_offsets.assign(offsets, offsets + dynamic);
+    offsets += dynamic;
+  }
+}
+
+void CmdPushConstants(CommandBuffer& commands, VkPipelineLayout, VkShaderStageFlags, uint32_t offset,
+                      uint32_t bytes, const void* from) {
+  if (offset > kMaxPushConstantBytes || bytes > kMaxPushConstantBytes - offset)
+    throw Refusal(fmt::format("{} bytes of push constants at byte {} do not fit into {}", bytes, offset,
+                              kMaxPushConstantBytes));
+  std::memcpy(commands.bound.push_constants.data() + offset, from, bytes);
+}
+
+void CmdPushDescriptorSetKHR(CommandBuffer& commands, VkPipelineBindPoint, VkPipelineLayout layout,
+                             uint32_t number, uint32_t count, const VkWriteDescriptorSet* writes) {
+  DescriptorSet& set = pushed_set(commands, layout, number);
+  for (uint32_t i = 0; i < count; ++i) write(commands.device, set, writes[i]);
+}
+
+void CmdPushDescriptorSetWithTemplateKHR(CommandBuffer& commands, VkDescriptorUpdateTemplate with,
+                                         VkPipelineLayout layout, uint32_t number, const void* data) {
+  write(commands.device, pushed_set(commands, layout, number), *with, data);
+}
+
+}  // namespace glint::vulkan
