@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/stats.h"
 
+#include "base/check.h"
+
 namespace glint::stats {
 
 Stat::Stat(Group* group, std::string_view name, std::string_view unit, std::string_view doc)
@@ -32,6 +34,13 @@ void Group::accept(Visitor& visitor) const {
   for (const Stat* stat : stats_) stat->accept(visitor);
   for (const Group* child : children_) child->accept(visitor);
   visitor.leave(*this);
+}
+
+void Group::take_in(const Group& other) {
+  GLINT_CHECK(stats_.size() == other.stats_.size() && children_.size() == other.children_.size(),
+              "the statistics of '{}' are of another machine", name_);
+  for (size_t i = 0; i < stats_.size(); ++i) stats_[i]->take_in(*other.stats_[i]);
+  for (size_t i = 0; i < children_.size(); ++i) children_[i]->take_in(*other.children_[i]);
 }
 
 }  // namespace glint::stats

@@ -27,6 +27,8 @@ class Stat {
   Stat& operator=(const Stat&) = delete;
   virtual ~Stat() = default;
   virtual void accept(Visitor& visitor) const = 0;
+  // Adds what the same statistic has counted in another run. What is computed when it is read adds nothing.
+  virtual void take_in(const Stat&) {}
 
   std::string_view name() const { return name_; }
   std::string_view unit() const { return unit_; }
@@ -49,6 +51,7 @@ class Counter final : public Stat {
   }
   uint64_t value() const { return value_; }
   void accept(Visitor& visitor) const override;
+  void take_in(const Stat& other) override { value_ += static_cast<const Counter&>(other).value_; }
 
  private:
   uint64_t value_ = 0;
@@ -73,14 +76,19 @@ class Ratio final : public Stat {
 // instances or a peak.
 class Value final : public Stat {
  public:
+  // `join`, when given, takes in the value of another run, as a peak has to.
   Value(Group* group, std::string_view name, std::string_view unit, std::function<double()> read,
-        std::string_view doc)
-      : Stat(group, name, unit, doc), read_(std::move(read)) {}
+        std::string_view doc, std::function<void(double)> join = {})
+      : Stat(group, name, unit, doc), read_(std::move(read)), join_(std::move(join)) {}
   double value() const { return read_(); }
   void accept(Visitor& visitor) const override;
+  void take_in(const Stat& other) override {
+    if (join_) join_(static_cast<const Value&>(other).value());
+  }
 
  private:
   std::function<double()> read_;
+  std::function<void(double)> join_;
 };
 
 // Defines bins of equal width over [low, high). Values below and above count in the first and last bin.
@@ -107,6 +115,10 @@ class Histogram final : public Stat {
     return sum;
   }
   void accept(Visitor& visitor) const override;
+  void take_in(const Stat& other) override {
+    const auto& counts = static_cast<const Histogram&>(other).counts_;
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += counts[i];
+  }
 
  private:
   std::size_t bin_of(uint64_t x) const {
@@ -144,6 +156,10 @@ class Breakdown final : public BreakdownBase {
     for (uint64_t n : counts_) sum += n;
     return sum;
   }
+  void take_in(const Stat& other) override {
+    const auto& counts = static_cast<const Breakdown&>(other).counts_;
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += counts[i];
+  }
 
  private:
   std::array<uint64_t, std::size_t(Enum::Count)> counts_{};
@@ -156,12 +172,15 @@ class Group {
   Group& operator=(const Group&) = delete;
   void accept(Visitor& visitor) const;
   const std::string& name() const { return name_; }
+  // Adds what the same tree has counted in another run. Ratios and values are then those of both runs
+  // together. The two runs are of the same machine.
+  void take_in(const Group& other);
 
  private:
   friend class Stat;
   std::string name_;
-  std::vector<const Stat*> stats_;
-  std::vector<const Group*> children_;
+  std::vector<Stat*> stats_;
+  std::vector<Group*> children_;
 };
 
 class Visitor {

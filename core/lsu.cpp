@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 
 #include "base/check.h"
 
@@ -18,7 +19,7 @@ Lsu::Lsu(const Params& params, mem::L1Port& l1)
       samples_per_cycle_(params.texture.samples_per_cycle),
       own_queue_(params.texture.queue > 0),
       own_door_(params.texture.own_door),
-      accesses_(params.lsu.accesses, MemoryAccess(l1.line_bytes())) {
+      accesses_(params.lsu.accesses) {
   groups_[0].capacity = params.lsu.queue;
   groups_[1].capacity = params.texture.queue;
   for (uint32_t sectors = 0; sectors < sector_cycles_.size(); ++sectors)
@@ -36,6 +37,7 @@ MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now, bool texture) {
   free_.pop_back();
   queue.id[(queue.head + queue.count++) % kMaxQueue] = id;
   MemoryAccess& access = accesses_[id];
+  if (id == num_made_) std::construct_at(&access, l1_.line_bytes()), ++num_made_;
   access.lines.clear();
   access.num_sent = access.num_answers = access.passes = access.num_table_lines = 0;
   access.atomic = false;

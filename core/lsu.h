@@ -12,6 +12,7 @@
 #include "core/coalesce.h"
 #include "core/params.h"
 #include "isa/atomic.h"
+#include "memsys/host_block.h"
 #include "memsys/l1_port.h"
 #include "memsys/ring.h"
 
@@ -139,7 +140,9 @@ class Lsu {
   uint32_t num_accepted_ = 0;
   uint64_t num_vacated_ = 0;
   Cycle due_ = kNever;  // first cycle with work of the unit's own, unless answers of the L1 come before
-  std::vector<MemoryAccess> accesses_;
+  // Accesses are made when they are used first, because the table is large and hardly ever full.
+  mem::HostArray<MemoryAccess> accesses_;
+  uint32_t num_made_ = 0;                   // They have the first numbers.
   std::vector<uint32_t> free_, completed_;  // reserved once
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "base/registry.h"
 #include "base/stats.h"
@@ -49,6 +50,10 @@ class DramModel {
   // Simulates the command clocks up to core cycle `now`.
   virtual void advance(Cycle now) = 0;
   virtual void finish(Cycle end) = 0;  // counts the clocks up to the end of the run in `use`
+  // Returns the rows that are open after a launch, by bank, and opens them before the first request of the
+  // next. Model: commands of the launch before delay none of the next, and refreshes begin anew.
+  virtual std::vector<uint32_t> open_rows() const { return {}; }
+  virtual void open_rows(const std::vector<uint32_t>&) {}
   Cycle next_command() const { return next_step_ == kNever ? kNever : clocks_.cycle_after(next_step_); }
   Ring<DramReturn>& returns() { return returns_; }  // is in order of `ready`, which may lie in the future
   const Ring<DramReturn>& returns() const { return returns_; }

@@ -21,6 +21,14 @@ std::string name_of_bucket(uint32_t bucket) {
 
 }  // namespace
 
+void Latencies::add(const Latencies& other) {
+  for (size_t c = 0; c < classes_.size(); ++c) {
+    for (uint32_t bucket = 0; bucket < kBuckets; ++bucket)
+      classes_[c].counts[bucket] += other.classes_[c].counts[bucket];
+    classes_[c].cycles += other.classes_[c].cycles;
+  }
+}
+
 LatencyStats::LatencyStats(stats::Group* parent, std::string name, const char* what)
     : Group(parent, std::move(name)),
       reads_(this, "reads", "request", what,
@@ -97,6 +105,10 @@ std::vector<std::pair<std::string_view, uint64_t>> LatencyStats::Buckets::parts(
     if (const uint64_t n = of_.count(Traffic(i / Latencies::kBuckets), uint32_t(i % Latencies::kBuckets)))
       out.emplace_back(names_[i], n);
   return out;
+}
+
+void LatencyStats::Buckets::take_in(const Stat& other) {
+  for (const Latencies* part : static_cast<const Buckets&>(other).of_.parts_) of_.other_runs_.add(*part);
 }
 
 }  // namespace glint::mem

@@ -38,6 +38,7 @@ class Latencies {
     ++of.counts[bucket_of(latency)];
     of.cycles += latency;
   }
+  void add(const Latencies& other);
   uint64_t count(Traffic traffic, uint32_t bucket) const { return classes_[size_t(traffic)].counts[bucket]; }
   uint64_t cycles(Traffic traffic) const { return classes_[size_t(traffic)].cycles; }
 
@@ -80,14 +81,17 @@ class LatencyStats : public stats::Group {
    public:
     Buckets(LatencyStats* of, std::string_view doc);
     std::vector<std::pair<std::string_view, uint64_t>> parts() const override;
+    // Everything else of the group is computed from the buckets and their cycles.
+    void take_in(const Stat& other) override;
 
    private:
-    const LatencyStats& of_;
+    LatencyStats& of_;
     std::vector<std::string> names_;  // by class, then by bucket
   };
   uint64_t count(Traffic traffic, uint32_t bucket) const;
 
-  std::vector<const Latencies*> parts_;
+  Latencies other_runs_;
+  std::vector<const Latencies*> parts_{&other_runs_};
   ByTraffic reads_, cycles_, p50_, p90_, p99_;
   Buckets buckets_;
 };

@@ -37,6 +37,16 @@ std::vector<Cell*> MemorySystem::cells() {
   return out;
 }
 
+MemoryContents MemorySystem::take_contents() {
+  MemoryContents out;
+  for (const auto& partition : partitions_) out.push_back(partition->take_contents());
+  return out;
+}
+
+void MemorySystem::put_contents(MemoryContents&& contents) {
+  for (size_t i = 0; i < partitions_.size(); ++i) partitions_[i]->put_contents(std::move(contents[i]));
+}
+
 double MemorySystem::imbalance() const {
   uint64_t most = 0, sum = 0;
   for (const auto& partition : partitions_) {

@@ -16,6 +16,10 @@
 
 namespace glint::mem {
 
+// Holds what stays in the memory system from one launch to the next. Model: that is what the L2 holds, and
+// the open rows of DRAM. The L1s are emptied, as at the start of a kernel on hardware.
+using MemoryContents = std::vector<PartitionContents>;
+
 // Owns all parts and connects them. The engine advances cells() and delivers channels(); each core ticks its
 // l1() as part of the core's own cell. `params` must have passed check().
 class MemorySystem {
@@ -35,6 +39,11 @@ class MemorySystem {
   std::vector<ChannelBase*> channels() { return network_->channels(); }
   // Returns the longest window that the engine may use, which is at least 1: no message arrives sooner.
   Cycle shortest_latency() const { return network_->shortest_latency(); }
+
+  // Takes the contents after a launch that was run to its end, and gives them to the memory system of the
+  // next launch before it begins. Both have the same parameters.
+  MemoryContents take_contents();
+  void put_contents(MemoryContents&& contents);
 
   // Counts the cycles up to the end of the run under their reasons. It is called once, before statistics are
   // read.

@@ -23,6 +23,18 @@ Partition::Partition(const Params& params, uint32_t index, const PartitionMap& m
   }
 }
 
+PartitionContents Partition::take_contents() {
+  PartitionContents out;
+  for (const auto& slice : slices_) out.slices.push_back(slice->take_contents());
+  out.rows = dram_->open_rows();
+  return out;
+}
+
+void Partition::put_contents(PartitionContents&& contents) {
+  for (size_t i = 0; i < slices_.size(); ++i) slices_[i]->put_contents(std::move(contents.slices[i]));
+  dram_->open_rows(contents.rows);
+}
+
 void Partition::advance(Cycle from, Cycle until) {
   account(from);
   for (const auto& slice : slices_) slice->prefetch();

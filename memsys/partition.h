@@ -24,6 +24,12 @@ struct DramTurn {
   uint64_t requests = 0;  // number of requests that the channel has taken since the launch
 };
 
+// Holds what a partition keeps from one launch to the next.
+struct PartitionContents {
+  std::vector<L2Contents> slices;
+  std::vector<uint32_t> rows;  // the rows of DRAM that are open, by bank
+};
+
 // Slices take turns to hand requests to DRAM; the requests of one slice keep their order. Every cycle of a
 // slice is counted under one reason.
 class Partition final : public Cell {
@@ -37,6 +43,9 @@ class Partition final : public Cell {
   bool finished() const override;
   uint64_t progress() const override;
   std::string describe_stall() const override;
+
+  PartitionContents take_contents();
+  void put_contents(PartitionContents&& contents);
 
   void finish(Cycle end);  // counts the cycles up to the end of the run under their reasons
   IntervalSampler& sampler() { return sampler_; }

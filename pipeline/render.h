@@ -91,6 +91,9 @@ struct RenderResult {
   double wall_seconds = 0;  // time of the run alone, without compiling and building
   std::unique_ptr<RunStats> stats;
   const stats::Group& statistics() const;  // root of the tree
+  // Adds what a launch on the same machine, after this one, has counted: times, counts and statistics. What
+  // belongs to one launch alone, such as profile and picture, stays.
+  void add(const RenderResult& next);
 };
 
 // Runs the launch of a world on either machine. The result has everything except pictures, structures and

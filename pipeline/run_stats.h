@@ -33,6 +33,7 @@ class RunStats {
   explicit RunStats(const FunctionalCounts& counts)
       : functional_(std::make_unique<FunctionalStats>(counts)) {}
   explicit RunStats(std::unique_ptr<TimingMachine> machine) : timing_(std::move(machine)) {}
+  stats::Group& root() { return timing_ ? timing_->root() : *functional_; }
   const stats::Group& root() const { return timing_ ? timing_->root() : *functional_; }
   // Returns the machine that ran, or null after a functional run.
   const TimingMachine* timing() const { return timing_.get(); }

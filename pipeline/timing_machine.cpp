@@ -58,6 +58,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
                              const HostOptions& host)
     : params_(checked(params, world)),
       world_(world),
+      reserves_(*world.memory),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
       endless_(*world.image),
       effects_(params_.core.livelock_budget),
@@ -68,7 +69,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
                .window = host.window,
                .homes = host.homes}) {
   const Cycle turn = params_.cores > 1 ? memory_.shortest_latency() : 0;
-  const auto reserve = [&](uint64_t bytes) { return bytes ? world.memory->reserve(bytes) : Address{0}; };
+  const auto reserve = [&](uint64_t bytes) { return bytes ? reserves_.take(bytes) : Address{0}; };
   const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)),
                 constants = reserve(core::CoreCell::constant_bytes(params_.core, world));
   const uint32_t shared_per_warp = stack_bytes_per_warp(params_, world);
@@ -77,16 +78,14 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
     const std::string name = fmt::format("core[{}]", i);
     rt_groups_.push_back(std::make_unique<stats::Group>(&root_, fmt::format("rt_unit[{}]", i)));
     rt::RtUnit::Context rt{*world.memory, memory_.l1(i), rt_groups_.back().get(), 0};
-    if (const uint64_t bytes = rt::RtUnit::result_bytes(params_.rt))
-      rt.results = world.memory->reserve(bytes);
+    if (const uint64_t bytes = rt::RtUnit::result_bytes(params_.rt)) rt.results = reserves_.take(bytes);
     if (const uint64_t bytes = core::CoreCell::table_bytes(params_.core, world))
-      rt.tables = core::CoreCell::table_layout(world, world.memory->reserve(bytes));
+      rt.tables = core::CoreCell::table_layout(world, reserves_.take(bytes));
     if (const uint64_t bytes = rt::RtUnit::stack_bytes_per_warp(params_.rt))
-      rt.stacks = world.memory->reserve(bytes * params_.core.warps);
-    if (const uint64_t bytes = rt::RtUnit::pool_bytes(params_.rt))
-      rt.ray_states = world.memory->reserve(bytes);
+      rt.stacks = reserves_.take(bytes * params_.core.warps);
+    if (const uint64_t bytes = rt::RtUnit::pool_bytes(params_.rt)) rt.ray_states = reserves_.take(bytes);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
-    const Address local = world.memory->reserve(core::CoreCell::local_bytes(params_.core, world));
+    const Address local = reserves_.take(core::CoreCell::local_bytes(params_.core, world));
     const core::CoreCell::Context context{.world = world,
                                           .l1 = memory_.l1(i),
                                           .rt = *rt_units_.back(),
@@ -109,6 +108,15 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
   }
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
+}
+
+Address Reserves::take(uint64_t bytes) {
+  return all_.emplace_back(memory_.reserve(bytes), bytes).first;
+}
+
+void Reserves::give_back() {
+  for (const auto& [first, bytes] : all_) memory_.release(first, bytes);
+  all_.clear();
 }
 
 Cycle TimingMachine::run(const LaunchWatch& watch) {
@@ -176,6 +184,7 @@ void TimingMachine::finish(Cycle quiet, Cycle cycles) {
   for (auto& core : cores_) core->finish(quiet);
   for (auto& unit : rt_units_) unit->finish(quiet);
   memory_.finish(quiet);
+  reserves_.give_back();
   root_.cycles += cycles;
   root_.attributed += quiet;
   if (end_ == LaunchEnd::Whole) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/stats.h"
@@ -28,7 +29,23 @@ struct HostOptions {
   std::vector<uint32_t> homes{};
 };
 
-// Builds the whole GPU for one launch. `world` outlives it.
+// Holds physical memory that a machine has reserved for a launch, until the launch has ended.
+class Reserves {
+ public:
+  explicit Reserves(mem::AddressSpace& memory) : memory_(memory) {}
+  Reserves(const Reserves&) = delete;
+  Reserves& operator=(const Reserves&) = delete;
+  ~Reserves() { give_back(); }
+  Address take(uint64_t bytes);
+  // Gives everything back. The memory may end after it.
+  void give_back();
+
+ private:
+  mem::AddressSpace& memory_;
+  std::vector<std::pair<Address, uint64_t>> all_;
+};
+
+// Builds the whole GPU for one launch. `world` outlives the launch. Device runs one launch after another.
 class TimingMachine {
  public:
   // Throws UserError that lists every impossible parameter.
@@ -36,6 +53,7 @@ class TimingMachine {
                 const HostOptions& host = {});
 
   // Runs the launch to its end, or until the watch ends it, and returns its cycles. Throws as render() does.
+  // The memory that it has reserved is free again afterwards.
   Cycle run(const LaunchWatch& watch);
   LaunchEnd end() const { return end_; }                        // why run() has ended
   const LaunchProgress& progress() const { return progress_; }  // how far it came, if the watch has ended it
@@ -54,6 +72,7 @@ class TimingMachine {
 
   const GpuParams& params() const { return params_; }
   const stats::Group& root() const { return root_; }
+  stats::Group& root() { return root_; }
   const core::CoreCell& core(uint32_t index) const { return *cores_[index]; }
   core::CoreCell& core(uint32_t index) { return *cores_[index]; }
   const rt::RtUnit& rt_unit(uint32_t index) const { return *rt_units_[index]; }
@@ -83,6 +102,7 @@ class TimingMachine {
 
   const GpuParams params_;
   const exec::World& world_;
+  Reserves reserves_;
   Root root_;
   mem::LatencyStats access_latency_{&root_, "access_latency",
                                     "Number of warp instructions that read memory through the L1, by traffic "

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/stats.h"
@@ -59,6 +60,13 @@ struct ToDram {
   bool write = false;
 };
 
+// Holds what a slice keeps from one launch to the next.
+struct L2Contents {
+  TagArray tags;
+  std::vector<WordMask> words;  // words written in sectors that are dirty and not valid, by slot
+  LineSet seen;
+};
+
 // Packets are served in order of arrival, with `sectors_per_cycle` sectors of data per cycle. The oldest
 // packet waits while it needs an MSHR, a merge or an entry of the queue to DRAM and none is free. All packets
 // behind it wait, too. Sectors that a write covers are valid at once. Of a sector that is written in part,
@@ -84,6 +92,12 @@ class L2Slice {
   // Returns the next cycle with a reply or a packet to handle. The partition knows when DRAM has work.
   Cycle next_work() const;
   void account(Cycle until, bool dram_works);
+
+  // Takes what the slice holds after a launch, and gives it to the same slice of the machine of the next.
+  L2Contents take_contents() { return {std::move(tags_), std::move(words_), std::move(seen_)}; }
+  void put_contents(L2Contents&& contents) {
+    tags_ = std::move(contents.tags), words_ = std::move(contents.words), seen_ = std::move(contents.seen);
+  }
 
   Ring<ToDram>& to_dram() { return to_dram_; }
   const Ring<ToDram>& to_dram() const { return to_dram_; }

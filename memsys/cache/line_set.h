@@ -42,7 +42,7 @@ class LineSet {
     return *pages_[index];
   }
 
-  const uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
+  uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
   std::vector<std::unique_ptr<Page>> pages_;
 };
 

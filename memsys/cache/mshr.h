@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/types.h"
 #include "memsys/cache/line_table.h"
+#include "memsys/host_block.h"
 
 namespace glint::mem {
 
@@ -23,7 +24,6 @@ class Mshr {
       : entries_(entries), waiters_(size_t(entries) * merges), index_(entries), merges_(merges) {
     for (uint32_t i = 0; i < entries_.size(); ++i)
       entries_[i].first = i + 1 < entries_.size() ? i + 1 : kNone;
-    for (uint32_t i = 0; i < waiters_.size(); ++i) waiters_[i].next = i + 1 < waiters_.size() ? i + 1 : kNone;
   }
 
   uint32_t find(Address line) const { return index_.find(line); }
@@ -42,9 +42,12 @@ class Mshr {
   }
   void expect(uint32_t entry, uint8_t sectors) { entries_[entry].pending |= sectors; }
   void add(uint32_t entry, const Waiter& waiter) {
-    const uint32_t id = free_waiter_;
-    GLINT_DCHECK(id != kNone, "no free waiter");
-    free_waiter_ = waiters_[id].next;
+    uint32_t id = free_waiter_;
+    if (id == kNone)
+      id = num_used_++;
+    else
+      free_waiter_ = waiters_[id].next;
+    GLINT_DCHECK(id < waiters_.size(), "no free waiter");
     waiters_[id] = {waiter, kNone};
     Entry& e = entries_[entry];
     (e.last == kNone ? e.first : waiters_[e.last].next) = id;
@@ -91,10 +94,11 @@ class Mshr {
   };
 
   std::vector<Entry> entries_;
-  std::vector<Link> waiters_;
+  HostArray<Link> waiters_;  // large, and mostly never touched
   LineTable index_;
   uint32_t merges_;
-  uint32_t free_entry_ = 0, free_waiter_ = 0;
+  uint32_t free_entry_ = 0, free_waiter_ = kNone;
+  uint32_t num_used_ = 0;  // waiters that have ever been in use, which have the first numbers
 };
 
 }  // namespace glint::mem

@@ -111,7 +111,7 @@ class TagArray {
   CacheShape shape_;
   uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
   std::vector<Line> lines_;
-  const bool has_index_;  // Sets are large, so lines are found by index_. Otherwise sets are searched.
+  bool has_index_;  // Sets are large, so lines are found by index_. Otherwise sets are searched.
   LineTable index_;
   std::unique_ptr<Replacement> replacement_;
 };

@@ -49,6 +49,16 @@ void DramChannel::finish(Cycle end) {
   account(clocks_.clock_at(end));
 }
 
+std::vector<uint32_t> DramChannel::open_rows() const {
+  std::vector<uint32_t> rows;
+  for (const Bank& bank : banks_) rows.push_back(bank.row);
+  return rows;
+}
+
+void DramChannel::open_rows(const std::vector<uint32_t>& rows) {
+  for (size_t bank = 0; bank < banks_.size(); ++bank) banks_[bank].row = rows[bank];
+}
+
 void DramChannel::step(DramClock now) {
   const bool refreshed = refresh_up_to(now);
   account(now);

@@ -27,6 +27,8 @@ class DramChannel : public DramModel {
   void add(Cycle now, Address line, uint8_t sectors, Address local, bool write) override;
   void advance(Cycle now) override;
   void finish(Cycle end) override;
+  std::vector<uint32_t> open_rows() const override;
+  void open_rows(const std::vector<uint32_t>& rows) override;
   const DramTiming& timing() const { return timing_; }
 
  private:

@@ -1,6 +1,7 @@
 // Declares what an RT unit counts.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -130,10 +131,18 @@ struct RtStats : stats::Group {
       "Number of nodes that a ray visited on its whole walk, wherever that ended. Each ray counts once."};
 
   uint32_t most_nodes = 0, deepest_stack = 0;
-  stats::Value max_ray_nodes{this, "max_ray_nodes", "node", [this] { return double(most_nodes); },
-                             "Largest number of nodes that one ray visited."};
-  stats::Value max_stack{this, "max_stack", "entry", [this] { return double(deepest_stack); },
-                         "Largest number of entries on a ray's stack."};
+  stats::Value max_ray_nodes{this,
+                             "max_ray_nodes",
+                             "node",
+                             [this] { return double(most_nodes); },
+                             "Largest number of nodes that one ray visited.",
+                             [this](double other) { most_nodes = std::max(most_nodes, uint32_t(other)); }};
+  stats::Value max_stack{this,
+                         "max_stack",
+                         "entry",
+                         [this] { return double(deepest_stack); },
+                         "Largest number of entries on a ray's stack.",
+                         [this](double other) { deepest_stack = std::max(deepest_stack, uint32_t(other)); }};
 };
 
 }  // namespace glint::rt
