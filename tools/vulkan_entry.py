@@ -73,6 +73,7 @@ class Registry:
                              if t.get("alias")}
         self.features = [f for f in root.iterfind("feature") if is_vulkan(f)
                          and tuple(map(int, f.get("number").split("."))) <= NEWEST]
+        self.formats = [e.get("name") for e in root.iterfind("enums[@name='VkFormat']/enum") if e.get("value")]
         self.extensions = {e.get("name"): e for e in root.iterfind("extensions/extension") if is_vulkan(e)}
 
     def command(self, name):
@@ -237,6 +238,12 @@ def extension_table(registry, extensions, announced, kind):
     return "".join(out) + "};\n"
 
 
+def format_names(registry):
+    rows = "".join(f"    case {name}:\n      return \"{name}\";\n" for name in registry.formats)
+    return ("std::string_view name_of(VkFormat format) {\n  switch (int(format)) {\n" + rows
+            + "    default:\n      return {};\n  }\n}\n\n")
+
+
 def announced_tables(registry, extensions, announced):
     return (HEAD + '#include "vulkan/announced.h"\n\nnamespace glint::vulkan {\nnamespace {\n\n'
             + extension_table(registry, extensions, announced, "instance")
@@ -245,7 +252,7 @@ def announced_tables(registry, extensions, announced):
             + "std::span<const VkExtensionProperties> instance_extensions() {\n  return kInstanceExtensions;\n}\n"
             + "std::span<const VkExtensionProperties> device_extensions() {\n  return kDeviceExtensions;\n}\n"
             + "std::span<const FeatureStruct> feature_structs() {\n  return kFeatureStructs;\n}\n\n"
-            + property_functions(registry, extensions) + "\n}  // namespace glint::vulkan\n")
+            + format_names(registry) + property_functions(registry, extensions) + "\n}  // namespace glint::vulkan\n")
 
 
 def write(path, text):

@@ -16,6 +16,9 @@ namespace glint::vulkan {
 std::span<const VkExtensionProperties> instance_extensions();
 std::span<const VkExtensionProperties> device_extensions();
 
+// Returns the name of a core format, such as "VK_FORMAT_R8_UNORM", or "".
+std::string_view name_of(VkFormat format);
+
 struct Feature {
   std::string_view name;
   bool announced;

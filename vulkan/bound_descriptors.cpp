@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/bound_descriptors.h"
 
+#include <utility>
 #include <vector>
 
 #include "vulkan/device.h"
+#include "vulkan/image.h"
 #include "vulkan/memory.h"
 
 namespace glint::vulkan {
@@ -17,8 +19,8 @@ struct Place {
   const Descriptor& at(uint32_t element) const { return set.set->descriptors[layout.first + element]; }
 };
 
-pipeline::BufferRange range_of(Device& device, const Place& place, uint32_t element,
-                               pipeline::BufferRange unbound) {
+pipeline::BufferRange buffer_range(Device& device, const Place& place, uint32_t element,
+                                   pipeline::BufferRange unbound) {
   const Descriptor& descriptor = place.at(element);
   if (!descriptor.buffer) return unbound;
   const VkDeviceSize dynamic =
@@ -32,8 +34,42 @@ void bind_buffers(Device& device, pipeline::LaunchBuilder& builder, const Place&
                   pipeline::BindingPlace number) {
   std::vector<pipeline::BufferRange> all;
   for (uint32_t i = 0; i < place.layout.count; ++i)
-    all.push_back(range_of(device, place, i, pipeline::LaunchBuilder::unbound(number)));
+    all.push_back(buffer_range(device, place, i, pipeline::LaunchBuilder::unbound(number)));
   builder.bind_buffers(number, all);
+}
+
+// Returns the texels of a buffer as an image with one row.
+exec::ImageView texels_of(Device& device, const VkBufferView_T& view) {
+  const uint64_t bytes = bytes_of(device, view.buffer, view.offset, view.range).bytes;
+  exec::ImageView out;
+  out.name = view.buffer->name, out.format = view.format, out.shape = isa::ImageShape::Buffer;
+  out.width = uint32_t(bytes / out.texel_bytes());
+  out.base = address_of_part(device, view.buffer, view.offset, bytes);
+  return out;
+}
+
+exec::ImageView image_of(Device& device, const Descriptor& descriptor, pipeline::BindingPlace number) {
+  if (descriptor.texels) return texels_of(device, *descriptor.texels);
+  if (!descriptor.view) return pipeline::unbound_image(number);
+  exec::ImageView out = descriptor.view->view;
+  if (descriptor.sampler) out.sampler = descriptor.sampler->sampler;
+  return out;
+}
+
+void bind_images(Device& device, pipeline::LaunchBuilder& builder, const Place& place,
+                 pipeline::BindingPlace number) {
+  std::vector<exec::ImageView> all;
+  for (uint32_t i = 0; i < place.layout.count; ++i) all.push_back(image_of(device, place.at(i), number));
+  builder.bind_images(number, std::move(all));
+}
+
+void bind_samplers(pipeline::LaunchBuilder& builder, const Place& place, pipeline::BindingPlace number) {
+  std::vector<exec::Sampler> all;
+  for (uint32_t i = 0; i < place.layout.count; ++i) {
+    const VkSampler sampler = place.at(i).sampler;
+    all.push_back(sampler ? sampler->sampler : pipeline::unbound_sampler(number));
+  }
+  builder.bind_samplers(number, std::move(all));
 }
 
 }  // namespace
@@ -55,8 +91,10 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
     case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
       return builder.bind_buffers(number,
                                   {{set->second.set->inline_blocks.at(use.binding), place.layout.count}});
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return bind_samplers(builder, place, number);
     default:
-      return;
+      return bind_images(device, builder, place, number);
   }
 }
 

@@ -25,9 +25,9 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
   glint::mem::AddressSpace memory;
-  glint::frontend::ShaderCache shader_cache{{}};  // in memory only
-  VkDeviceSize allocated_bytes = 0;               // of the heap
-  uint32_t buffers_made = 0, shaders_made = 0;    // They give objects names.
+  glint::frontend::ShaderCache shader_cache{{}};                 // in memory only
+  VkDeviceSize allocated_bytes = 0;                              // of the heap
+  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0;  // They give objects names.
   glint::vulkan::DeviceClock clock;
   bool is_lost = false;  // A launch did something that ends the device.
   VkQueue_T queue{*this};

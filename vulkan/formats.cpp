@@ -1,27 +1,120 @@
 // Says what the device does with each format.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <bit>
+#include <string_view>
+
+#include "vulkan/announced.h"
+#include "vulkan/chain.h"
+#include "vulkan/image.h"
 #include "vulkan/instance.h"
 
 namespace glint::vulkan {
+namespace {
 
-void GetPhysicalDeviceFormatProperties(PhysicalDevice&, VkFormat, VkFormatProperties* out) {
-  *out = {};
+constexpr VkFormatFeatureFlags2 kTransfer =
+    VK_FORMAT_FEATURE_2_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_2_TRANSFER_DST_BIT;
+constexpr VkFormatFeatureFlags2 kWithoutFormat = VK_FORMAT_FEATURE_2_STORAGE_READ_WITHOUT_FORMAT_BIT |
+                                                 VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT;
+
+bool is_depth(VkFormat format) {
+  return std::string_view(name_of(format)).substr(0, 11) == "VK_FORMAT_D";
+}
+
+// Returns whether shaders may store to images of a format: those that SPIR-V has names for.
+bool can_store(exec::TexelFormat format) {
+  const exec::FormatInfo& info = exec::info_of(format);
+  if (info.numeric == exec::Numeric::Srgb) return false;
+  return format <= exec::TexelFormat::Rgb10a2Uint && format != exec::TexelFormat::Bgra8Unorm;
+}
+
+bool can_be_atomic(exec::TexelFormat format) {
+  return format == exec::TexelFormat::R32Uint || format == exec::TexelFormat::R32Sint;
+}
+
+// Says for what an image may be used that has these features.
+VkImageUsageFlags usage_of(VkFormatFeatureFlags2 features) {
+  VkImageUsageFlags out = 0;
+  if (features & VK_FORMAT_FEATURE_2_TRANSFER_SRC_BIT) out |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  if (features & VK_FORMAT_FEATURE_2_TRANSFER_DST_BIT) out |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (features & VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT) out |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  if (features & VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT) out |= VK_IMAGE_USAGE_STORAGE_BIT;
+  return out;
+}
+
+}  // namespace
+
+std::optional<exec::TexelFormat> format_of(VkFormat format) {
+  return exec::format_of_vulkan(name_of(format));
+}
+
+VkFormatFeatureFlags2 image_features_of(VkFormat format) {
+  const auto texels = format_of(format);
+  if (!texels) return 0;
+  VkFormatFeatureFlags2 out = kTransfer | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT |
+                              VK_FORMAT_FEATURE_2_BLIT_SRC_BIT | VK_FORMAT_FEATURE_2_BLIT_DST_BIT;
+  if (is_depth(format)) return out | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
+  if (!exec::is_integer(exec::info_of(*texels))) out |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT | kWithoutFormat;
+  if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_IMAGE_ATOMIC_BIT;
+  return out;
+}
+
+VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
+  const auto texels = format_of(format);
+  if (!texels || is_depth(format)) return 0;
+  VkFormatFeatureFlags2 out = VK_FORMAT_FEATURE_2_UNIFORM_TEXEL_BUFFER_BIT;
+  if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_BIT | kWithoutFormat;
+  if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_ATOMIC_BIT;
+  return out;
+}
+
+void GetPhysicalDeviceFormatProperties(PhysicalDevice&, VkFormat format, VkFormatProperties* out) {
+  // The flags of the older structure are the lower half.
+  out->linearTilingFeatures = out->optimalTilingFeatures =
+      VkFormatFeatureFlags(image_features_of(format) & ~kWithoutFormat);
+  out->bufferFeatures = VkFormatFeatureFlags(buffer_features_of(format) & ~kWithoutFormat);
 }
 
 void GetPhysicalDeviceFormatProperties2(PhysicalDevice& device, VkFormat format, VkFormatProperties2* out) {
   GetPhysicalDeviceFormatProperties(device, format, &out->formatProperties);
+  if (auto* more = find_in_output<VkFormatProperties3>(out, VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_3)) {
+    more->linearTilingFeatures = more->optimalTilingFeatures = image_features_of(format);
+    more->bufferFeatures = buffer_features_of(format);
+  }
 }
 
-VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice&, VkFormat, VkImageType, VkImageTiling,
-                                                VkImageUsageFlags, VkImageCreateFlags,
-                                                VkImageFormatProperties* out) {
+VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat format, VkImageType type,
+                                                VkImageTiling tiling, VkImageUsageFlags usage,
+                                                VkImageCreateFlags flags, VkImageFormatProperties* out) {
   *out = {};
-  return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  constexpr VkImageCreateFlags kKnownFlags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT |
+                                             VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
+                                             VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT;
+  const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
+  const VkImageUsageFlags possible = usage_of(image_features_of(format));
+  const bool is_usable = possible && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
+  if (!is_tiled || !is_usable || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  const VkPhysicalDeviceLimits& limits = device.core.limits;
+  const uint32_t width = type == VK_IMAGE_TYPE_1D   ? limits.maxImageDimension1D
+                         : type == VK_IMAGE_TYPE_2D ? limits.maxImageDimension2D
+                                                    : limits.maxImageDimension3D;
+  out->maxExtent = {width, type == VK_IMAGE_TYPE_1D ? 1 : width, type == VK_IMAGE_TYPE_3D ? width : 1};
+  out->maxMipLevels = uint32_t(std::bit_width(width));
+  out->maxArrayLayers = type == VK_IMAGE_TYPE_3D ? 1 : limits.maxImageArrayLayers;
+  out->sampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  out->maxResourceSize = kMaxAllocationBytes;
+  return VK_SUCCESS;
 }
 
 VkResult GetPhysicalDeviceImageFormatProperties2(PhysicalDevice& device,
                                                  const VkPhysicalDeviceImageFormatInfo2* info,
                                                  VkImageFormatProperties2* out) {
+  // Images cannot be shared with other processes.
+  if (const auto* external = find_in_chain<VkPhysicalDeviceExternalImageFormatInfo>(
+          info, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_IMAGE_FORMAT_INFO);
+      external && external->handleType)
+    return VK_ERROR_FORMAT_NOT_SUPPORTED;
   return GetPhysicalDeviceImageFormatProperties(device, info->format, info->type, info->tiling, info->usage,
                                                 info->flags, &out->imageFormatProperties);
 }

@@ -78,7 +78,11 @@ void Client::make_device(const Options& options) {
   queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, queues.queueCount = 1;
   queues.pQueuePriorities = &priority;
   VkDeviceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, info.pNext = options.more_features;
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  // glslang writes LocalSizeId into modules of SPIR-V 1.6, which Vulkan ties to this feature.
+  VkPhysicalDeviceMaintenance4Features sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES,
+                                             const_cast<void*>(options.more_features), VK_TRUE};
+  info.pNext = &sizes;
   info.queueCreateInfoCount = 1, info.pQueueCreateInfos = &queues;
   info.enabledExtensionCount = uint32_t(options.extensions.size());
   info.ppEnabledExtensionNames = options.extensions.data();
@@ -101,6 +105,14 @@ uint32_t Client::host_memory_type() const {
   throw std::runtime_error("there is no memory that the host can map");
 }
 
+VkDeviceMemory Client::allocate(const VkMemoryRequirements& needs, const void* more) {
+  VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, more, needs.size, host_memory_type()};
+  VkDeviceMemory out = nullptr;
+  check(vkAllocateMemory(device, &info, nullptr, &out), "vkAllocateMemory");
+  ends_.emplace_back([this, out] { vkFreeMemory(device, out, nullptr); });
+  return out;
+}
+
 MappedBuffer Client::buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) {
   MappedBuffer out;
   out.bytes = bytes;
@@ -113,13 +125,75 @@ MappedBuffer Client::buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) {
   VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO, nullptr,
                                   VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT, 0};
   const bool has_address = (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
-  VkMemoryAllocateInfo memory{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, has_address ? &flags : nullptr,
-                              needs.size, host_memory_type()};
-  check(vkAllocateMemory(device, &memory, nullptr, &out.memory), "vkAllocateMemory");
-  ends_.emplace_back([this, made = out.memory] { vkFreeMemory(device, made, nullptr); });
+  out.memory = allocate(needs, has_address ? &flags : nullptr);
   check(vkBindBufferMemory(device, out.buffer, out.memory, 0), "vkBindBufferMemory");
   check(vkMapMemory(device, out.memory, 0, VK_WHOLE_SIZE, 0, &out.data), "vkMapMemory");
   return out;
+}
+
+BoundImage Client::image(VkFormat format, VkExtent3D extent, uint32_t levels, uint32_t layers,
+                         VkComponentMapping swizzle) {
+  BoundImage out;
+  out.all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, levels, 0, layers};
+  const bool has_depth = extent.depth > 1;
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = has_depth ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  info.format = format, info.extent = extent, info.mipLevels = levels, info.arrayLayers = layers;
+  info.samples = VK_SAMPLE_COUNT_1_BIT, info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  VkFormatProperties can;
+  vkGetPhysicalDeviceFormatProperties(physical, format, &can);
+  if (can.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)
+    info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+  check(vkCreateImage(device, &info, nullptr, &out.image), "vkCreateImage");
+  ends_.emplace_back([this, made = out.image] { vkDestroyImage(device, made, nullptr); });
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device, out.image, &needs);
+  check(vkBindImageMemory(device, out.image, allocate(needs), 0), "vkBindImageMemory");
+  VkImageViewCreateInfo view{};
+  view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, view.image = out.image, view.format = format;
+  view.viewType = has_depth    ? VK_IMAGE_VIEW_TYPE_3D
+                  : layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                               : VK_IMAGE_VIEW_TYPE_2D;
+  view.components = swizzle, view.subresourceRange = out.all;
+  check(vkCreateImageView(device, &view, nullptr, &out.view), "vkCreateImageView");
+  ends_.emplace_back([this, made = out.view] { vkDestroyImageView(device, made, nullptr); });
+  check(run([&](VkCommandBuffer commands) {
+          VkImageMemoryBarrier barrier{};
+          barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, barrier.image = out.image;
+          barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL, barrier.subresourceRange = out.all;
+          barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+          vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                               VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+        }),
+        "the change of layout");
+  return out;
+}
+
+VkSampler Client::sampler(VkFilter filter, VkSamplerAddressMode mode) {
+  VkSamplerCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = info.minFilter = filter;
+  info.addressModeU = info.addressModeV = info.addressModeW = mode;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  VkSampler out = nullptr;
+  check(vkCreateSampler(device, &info, nullptr, &out), "vkCreateSampler");
+  ends_.emplace_back([this, out] { vkDestroySampler(device, out, nullptr); });
+  return out;
+}
+
+VkResult Client::upload(const MappedBuffer& from, const BoundImage& to, VkExtent3D extent) {
+  const VkBufferImageCopy region{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, to.all.layerCount}, {}, extent};
+  return run([&](VkCommandBuffer commands) {
+    vkCmdCopyBufferToImage(commands, from.buffer, to.image, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+  });
+}
+VkResult Client::download(const BoundImage& from, const MappedBuffer& to, VkExtent3D extent) {
+  const VkBufferImageCopy region{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, from.all.layerCount}, {}, extent};
+  return run([&](VkCommandBuffer commands) {
+    vkCmdCopyImageToBuffer(commands, from.image, VK_IMAGE_LAYOUT_GENERAL, to.buffer, 1, &region);
+  });
 }
 
 VkShaderModule Client::module(const std::string& glsl) {

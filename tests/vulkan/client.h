@@ -1,6 +1,7 @@
 // Is a small Vulkan program: what the tests of the driver need of an application, over the system's loader.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <utility>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -23,6 +24,12 @@ struct MappedBuffer {
   std::span<T> as() const {
     return {static_cast<T*>(data), size_t(bytes / sizeof(T))};
   }
+};
+
+struct BoundImage {
+  VkImage image = nullptr;
+  VkImageView view = nullptr;  // of all levels and layers
+  VkImageSubresourceRange all{};
 };
 
 struct ComputePipeline {
@@ -53,11 +60,19 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   MappedBuffer buffer(VkDeviceSize bytes, VkBufferUsageFlags usage = kAllUses);
+  // Makes an image with one view, and gives it the layout "general". Images with depth 1 have two axes.
+  BoundImage image(VkFormat format, VkExtent3D extent, uint32_t levels = 1, uint32_t layers = 1,
+                   VkComponentMapping swizzle = {});
+  VkSampler sampler(VkFilter filter, VkSamplerAddressMode mode);
+  // Fills level 0 of an image from a buffer, or a buffer from it.
+  VkResult upload(const MappedBuffer& from, const BoundImage& to, VkExtent3D extent);
+  VkResult download(const BoundImage& from, const MappedBuffer& to, VkExtent3D extent);
   VkShaderModule module(const std::string& glsl);
   ComputePipeline pipeline(const std::string& glsl, const PipelineOptions& options);
   // Returns a set in which binding i has buffer i.
   VkDescriptorSet set(VkDescriptorSetLayout layout, const std::vector<VkDescriptorBufferInfo>& buffers,
                       VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  void at_end(std::function<void()> end) { ends_.push_back(std::move(end)); }
   VkFence fence();
   VkSemaphore timeline(uint64_t value);
 
@@ -90,6 +105,7 @@ class Client {
   void make_instance(const Options& options);
   void make_device(const Options& options);
   uint32_t host_memory_type() const;
+  VkDeviceMemory allocate(const VkMemoryRequirements& needs, const void* more = nullptr);
 
   VkDebugUtilsMessengerEXT messenger_ = nullptr;
   std::vector<std::function<void()>> ends_;  // in the order of making

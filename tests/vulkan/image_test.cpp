@@ -1,0 +1,159 @@
+// Tests images over the Vulkan loader: storing, sampling, copies, clears and blits.
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+#include <numeric>
+
+#include "tests/support/catch.h"
+#include "tests/vulkan/client.h"
+
+// Tests with the tag [graphics] use commands that only graphics queues have in Vulkan; Glint's queue has them
+// too.
+namespace glint::test {
+namespace {
+
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kStorageImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+
+// Returns a set with a buffer at binding 0 and an image at binding 1.
+VkDescriptorSet set_with_image(Client& client, const ComputePipeline& pipeline, const MappedBuffer& buffer,
+                               VkDescriptorType type, const VkDescriptorImageInfo& image) {
+  const VkDescriptorPoolSize sizes[] = {{kStorage, 1}, {type, 1}};
+  VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 2, sizes};
+  VkDescriptorPool pool = nullptr;
+  check(vkCreateDescriptorPool(client.device, &info, nullptr, &pool), "vkCreateDescriptorPool");
+  client.at_end([&client, pool] { vkDestroyDescriptorPool(client.device, pool, nullptr); });
+  VkDescriptorSetAllocateInfo wanted{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1,
+                                     &pipeline.set_layout};
+  VkDescriptorSet set = nullptr;
+  check(vkAllocateDescriptorSets(client.device, &wanted, &set), "vkAllocateDescriptorSets");
+  const VkDescriptorBufferInfo all{buffer.buffer, 0, VK_WHOLE_SIZE};
+  VkWriteDescriptorSet writes[2]{};
+  for (uint32_t i = 0; i < 2; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, writes[i].dstSet = set;
+    writes[i].dstBinding = i, writes[i].descriptorCount = 1, writes[i].descriptorType = i ? type : kStorage;
+    writes[i].pBufferInfo = &all, writes[i].pImageInfo = &image;
+  }
+  vkUpdateDescriptorSets(client.device, 2, writes, 0, nullptr);
+  return set;
+}
+
+TEST_CASE("what a shader stores to an image is what a copy brings to a buffer", "[portable]") {
+  Client client;
+  const VkExtent3D extent{16, 8, 1};
+  const BoundImage image = client.image(VK_FORMAT_R8G8B8A8_UNORM, extent);
+  const MappedBuffer out = client.buffer(16 * 8 * 4);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
+      "layout(set = 0, binding = 1, rgba8) uniform writeonly image2D picture;\n"
+      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  imageStore(picture, p, vec4(p.x, p.y, 255 - p.x, 255) / 255.0); }\n",
+      {{kStorage, kStorageImage}});
+  const VkDescriptorSet set =
+      set_with_image(client, pipeline, out, kStorageImage, {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
+
+  REQUIRE(client.dispatch(pipeline, set, {2, 1, 1}) == VK_SUCCESS);
+  REQUIRE(client.download(image, out, extent) == VK_SUCCESS);
+
+  for (uint32_t y = 0; y < 8; ++y)
+    for (uint32_t x = 0; x < 16; ++x)
+      REQUIRE(out.as<uint32_t>()[y * 16 + x] == (0xff000000 | (255 - x) << 16 | y << 8 | x));
+}
+
+TEST_CASE("a linear sampler blends texels, and the view's swizzle orders their channels", "[portable]") {
+  Client client;
+  const VkExtent3D extent{2, 1, 1};
+  const BoundImage image = client.image(
+      VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1,
+      {VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_R, VK_COMPONENT_SWIZZLE_ONE, VK_COMPONENT_SWIZZLE_ZERO});
+  const MappedBuffer texels = client.buffer(32), out = client.buffer(16);
+  const std::array<float, 8> values{1, 10, 100, 1000, 3, 20, 200, 2000};
+  std::memcpy(texels.data, values.data(), sizeof values);
+  REQUIRE(client.upload(texels, image, extent) == VK_SUCCESS);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer O { vec4 v; };\n"
+      "layout(set = 0, binding = 1) uniform sampler2D picture;\n"
+      "void main() { v = textureLod(picture, vec2(0.5, 0.5), 0); }\n",
+      {{kStorage, kTexture}});
+  const VkSampler linear = client.sampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  const VkDescriptorSet set =
+      set_with_image(client, pipeline, out, kTexture, {linear, image.view, VK_IMAGE_LAYOUT_GENERAL});
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+
+  CHECK(out.as<float>()[0] == 15);
+  CHECK(out.as<float>()[1] == 2);
+  CHECK(out.as<float>()[2] == 1);
+  CHECK(out.as<float>()[3] == 0);
+}
+
+TEST_CASE("copies between images move boxes, layers and slices", "[portable]") {
+  Client client;
+  const VkExtent3D flat{4, 4, 1}, deep{4, 4, 2};
+  const BoundImage layered = client.image(VK_FORMAT_R32_UINT, flat, 1, 2);
+  const BoundImage slices = client.image(VK_FORMAT_R32_UINT, deep);
+  const MappedBuffer in = client.buffer(128), out = client.buffer(128);
+  std::iota(in.as<uint32_t>().begin(), in.as<uint32_t>().end(), 0u);
+  REQUIRE(client.upload(in, layered, flat) == VK_SUCCESS);
+
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    const VkClearColorValue nines{.uint32 = {9, 9, 9, 9}};
+    vkCmdClearColorImage(commands, slices.image, VK_IMAGE_LAYOUT_GENERAL, &nines, 1, &slices.all);
+    const VkMemoryBarrier all{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                              VK_ACCESS_TRANSFER_WRITE_BIT};
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &all,
+                         0, nullptr, 0, nullptr);
+    const VkImageCopy region{{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 2},
+                             {1, 0, 0},
+                             {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                             {0, 1, 0},
+                             {3, 2, 2}};
+    vkCmdCopyImage(commands, layered.image, VK_IMAGE_LAYOUT_GENERAL, slices.image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                   &region);
+  }) == VK_SUCCESS);
+  REQUIRE(client.download(slices, out, deep) == VK_SUCCESS);
+
+  for (uint32_t z = 0; z < 2; ++z)
+    for (uint32_t y = 0; y < 4; ++y)
+      for (uint32_t x = 0; x < 4; ++x) {
+        const bool is_copied = x < 3 && y >= 1 && y < 3;
+        REQUIRE(out.as<uint32_t>()[(z * 4 + y) * 4 + x] == (is_copied ? z * 16 + (y - 1) * 4 + x + 1 : 9));
+      }
+}
+
+TEST_CASE("a blit halves and mirrors a picture", "[portable][graphics]") {
+  Client client;
+  const VkExtent3D large{4, 2, 1}, small{2, 1, 1};
+  const BoundImage from = client.image(VK_FORMAT_R32_SFLOAT, large),
+                   to = client.image(VK_FORMAT_R32_SFLOAT, small);
+  const MappedBuffer in = client.buffer(32), out = client.buffer(8);
+  const std::array<float, 8> values{1, 3, 10, 30, 5, 7, 50, 70};
+  std::memcpy(in.data, values.data(), sizeof values);
+  REQUIRE(client.upload(in, from, large) == VK_SUCCESS);
+
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    const VkImageSubresourceLayers all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageBlit region{all, {{4, 0, 0}, {0, 2, 1}}, all, {{0, 0, 0}, {2, 1, 1}}};
+    vkCmdBlitImage(commands, from.image, VK_IMAGE_LAYOUT_GENERAL, to.image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                   &region, VK_FILTER_LINEAR);
+  }) == VK_SUCCESS);
+  REQUIRE(client.download(to, out, small) == VK_SUCCESS);
+
+  CHECK(out.as<float>()[0] == 40);
+  CHECK(out.as<float>()[1] == 4);
+}
+
+TEST_CASE("a format that shaders cannot store to is not announced as a storage image") {
+  Client client;
+  VkImageFormatProperties properties;
+  CHECK(vkGetPhysicalDeviceImageFormatProperties(client.physical, VK_FORMAT_R8G8B8A8_SRGB, VK_IMAGE_TYPE_2D,
+                                                 VK_IMAGE_TILING_OPTIMAL, VK_IMAGE_USAGE_STORAGE_BIT, 0,
+                                                 &properties) == VK_ERROR_FORMAT_NOT_SUPPORTED);
+  CHECK(vkGetPhysicalDeviceImageFormatProperties(client.physical, VK_FORMAT_R8G8B8A8_SRGB, VK_IMAGE_TYPE_2D,
+                                                 VK_IMAGE_TILING_OPTIMAL, VK_IMAGE_USAGE_SAMPLED_BIT, 0,
+                                                 &properties) == VK_SUCCESS);
+  CHECK(properties.maxMipLevels == 15);
+}
+
+}  // namespace
+}  // namespace glint::test

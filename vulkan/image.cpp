@@ -1,0 +1,132 @@
+// Makes images and binds them to memory.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/image.h"
+
+#include <fmt/format.h>
+#include <memory>
+
+#include "vulkan/chain.h"
+#include "vulkan/device.h"
+#include "vulkan/memory.h"
+
+namespace glint::vulkan {
+namespace {
+
+constexpr VkDeviceSize kImageAlignment = mem::AddressSpace::kWindowAlignment;
+
+exec::ImageView whole_of(const VkImageCreateInfo& info) {
+  const auto format = format_of(info.format);
+  if (!format)
+    throw Refusal(VK_ERROR_FORMAT_NOT_SUPPORTED, fmt::format("format {} is not there", int(info.format)));
+  if (info.samples != VK_SAMPLE_COUNT_1_BIT || (info.flags & VK_IMAGE_CREATE_SPARSE_BINDING_BIT))
+    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse images and images of several samples are not there");
+  exec::ImageView out;
+  out.format = *format;
+  out.width = info.extent.width, out.height = info.extent.height, out.depth = info.extent.depth;
+  out.levels = info.mipLevels, out.layers = info.arrayLayers;
+  return out;
+}
+
+VkMemoryRequirements requirements_of(const exec::ImageView& whole) {
+  return {(whole.bytes() + kImageAlignment - 1) / kImageAlignment * kImageAlignment, kImageAlignment,
+          kAllMemoryTypes};
+}
+
+void answer(VkMemoryRequirements2* out, const exec::ImageView& whole) {
+  out->memoryRequirements = requirements_of(whole);
+  if (auto* dedicated =
+          find_in_output<VkMemoryDedicatedRequirements>(out, VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS))
+    dedicated->prefersDedicatedAllocation = dedicated->requiresDedicatedAllocation = VK_FALSE;
+}
+
+}  // namespace
+
+exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& range) {
+  const auto count = [](uint32_t asked, uint32_t first, uint32_t there) {
+    const uint32_t rest = first < there ? there - first : 0;
+    const uint32_t out = asked == VK_REMAINING_MIP_LEVELS ? rest : asked;
+    if (out == 0 || out > rest)
+      throw Refusal(
+          fmt::format("levels or layers {} to {} are not in an image of {}", first, first + out, there));
+    return out;
+  };
+  static_assert(VK_REMAINING_MIP_LEVELS == VK_REMAINING_ARRAY_LAYERS);
+  return {range.baseMipLevel, count(range.levelCount, range.baseMipLevel, image.whole.levels),
+          range.baseArrayLayer, count(range.layerCount, range.baseArrayLayer, image.whole.layers)};
+}
+
+std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at) {
+  if (!image.memory) throw Refusal(fmt::format("{} is not bound to memory", image.whole.name));
+  return device.memory.data(image.memory->backing) + image.offset +
+         (image.whole.address_of(at) - image.whole.base);
+}
+
+VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out) {
+  auto made = std::make_unique<Image>();
+  made->whole = whole_of(*info);
+  if (made->whole.bytes() > kMaxAllocationBytes)
+    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                  fmt::format("an image has at most {} bytes", kMaxAllocationBytes));
+  made->whole.name = fmt::format("image {}", ++device.images_made);
+  made->type = info->imageType;
+  *out = made.release();
+  return VK_SUCCESS;
+}
+void DestroyImage(Device& device, VkImage image) {
+  if (!image) return;
+  if (image->memory) device.memory.free(image->whole.base);
+  delete image;
+}
+
+VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset) {
+  const VkDeviceSize bytes = image->whole.bytes();
+  if (offset % kImageAlignment || offset > memory->bytes || bytes > memory->bytes - offset)
+    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                  fmt::format("{} ({} bytes) does not fit at byte {} of {} bytes of memory",
+                              image->whole.name, bytes, offset, memory->bytes));
+  image->whole.base = device.memory.open_window(image->whole.name, memory->backing, offset, bytes);
+  image->memory = memory, image->offset = offset;
+  return VK_SUCCESS;
+}
+VkResult BindImageMemory2(Device& device, uint32_t count, const VkBindImageMemoryInfo* infos) {
+  for (uint32_t i = 0; i < count; ++i)
+    BindImageMemory(device, infos[i].image, infos[i].memory, infos[i].memoryOffset);
+  return VK_SUCCESS;
+}
+
+void GetImageMemoryRequirements(Device&, VkImage image, VkMemoryRequirements* out) {
+  *out = requirements_of(image->whole);
+}
+void GetImageMemoryRequirements2(Device&, const VkImageMemoryRequirementsInfo2* info,
+                                 VkMemoryRequirements2* out) {
+  answer(out, info->image->whole);
+}
+void GetDeviceImageMemoryRequirements(Device&, const VkDeviceImageMemoryRequirements* info,
+                                      VkMemoryRequirements2* out) {
+  answer(out, whole_of(*info->pCreateInfo));
+}
+
+// Nothing is sparse.
+void GetImageSparseMemoryRequirements(Device&, VkImage, uint32_t* count, VkSparseImageMemoryRequirements*) {
+  *count = 0;
+}
+void GetImageSparseMemoryRequirements2(Device&, const VkImageSparseMemoryRequirementsInfo2*, uint32_t* count,
+                                       VkSparseImageMemoryRequirements2*) {
+  *count = 0;
+}
+void GetDeviceImageSparseMemoryRequirements(Device&, const VkDeviceImageMemoryRequirements*, uint32_t* count,
+                                            VkSparseImageMemoryRequirements2*) {
+  *count = 0;
+}
+
+void GetImageSubresourceLayout(Device&, VkImage image, const VkImageSubresource* part,
+                               VkSubresourceLayout* out) {
+  const exec::ImageView& whole = image->whole;
+  const uint32_t level = part->mipLevel;
+  out->offset = whole.address_of({0, 0, 0, part->arrayLayer, level}) - whole.base;
+  out->rowPitch = VkDeviceSize{whole.extent(0, level)} * whole.texel_bytes();
+  out->depthPitch = out->rowPitch * whole.extent(1, level);
+  out->arrayPitch = out->size = out->depthPitch * whole.extent(2, level);
+}
+
+}  // namespace glint::vulkan

@@ -1,0 +1,145 @@
+// Makes views of images and of buffers, and samplers.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <fmt/format.h>
+#include <memory>
+
+#include "vulkan/device.h"
+#include "vulkan/image.h"
+#include "vulkan/memory.h"
+
+namespace glint::vulkan {
+namespace {
+
+isa::ImageShape shape_of(VkImageViewType type) {
+  switch (type) {
+    case VK_IMAGE_VIEW_TYPE_1D:
+      return isa::ImageShape::D1;
+    case VK_IMAGE_VIEW_TYPE_3D:
+      return isa::ImageShape::D3;
+    case VK_IMAGE_VIEW_TYPE_CUBE:
+      return isa::ImageShape::Cube;
+    case VK_IMAGE_VIEW_TYPE_1D_ARRAY:
+      return isa::ImageShape::A1d;
+    case VK_IMAGE_VIEW_TYPE_2D_ARRAY:
+      return isa::ImageShape::A2d;
+    case VK_IMAGE_VIEW_TYPE_CUBE_ARRAY:
+      return isa::ImageShape::Acube;
+    case VK_IMAGE_VIEW_TYPE_2D:
+    case VK_IMAGE_VIEW_TYPE_MAX_ENUM:
+      break;
+  }
+  return isa::ImageShape::D2;
+}
+
+exec::Component component_of(VkComponentSwizzle swizzle, exec::Component same) {
+  switch (swizzle) {
+    case VK_COMPONENT_SWIZZLE_ZERO:
+      return exec::Component::Zero;
+    case VK_COMPONENT_SWIZZLE_ONE:
+      return exec::Component::One;
+    case VK_COMPONENT_SWIZZLE_R:
+      return exec::Component::Red;
+    case VK_COMPONENT_SWIZZLE_G:
+      return exec::Component::Green;
+    case VK_COMPONENT_SWIZZLE_B:
+      return exec::Component::Blue;
+    case VK_COMPONENT_SWIZZLE_A:
+      return exec::Component::Alpha;
+    case VK_COMPONENT_SWIZZLE_IDENTITY:
+    case VK_COMPONENT_SWIZZLE_MAX_ENUM:
+      break;
+  }
+  return same;
+}
+
+exec::Filter filter_of(bool is_linear) {
+  return is_linear ? exec::Filter::Linear : exec::Filter::Nearest;
+}
+
+exec::Wrap wrap_of(VkSamplerAddressMode mode) {
+  switch (mode) {
+    case VK_SAMPLER_ADDRESS_MODE_REPEAT:
+      return exec::Wrap::Repeat;
+    case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT:
+      return exec::Wrap::MirroredRepeat;
+    case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER:
+      return exec::Wrap::ClampToBorder;
+    case VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE:
+      return exec::Wrap::MirrorClampToEdge;
+    case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE:
+    case VK_SAMPLER_ADDRESS_MODE_MAX_ENUM:
+      break;
+  }
+  return exec::Wrap::ClampToEdge;
+}
+
+exec::Words border_of(VkBorderColor color) {
+  constexpr uint32_t kOne = std::bit_cast<uint32_t>(1.0f);
+  switch (color) {
+    case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
+      return {0, 0, 0, kOne};
+    case VK_BORDER_COLOR_INT_OPAQUE_BLACK:
+      return {0, 0, 0, 1};
+    case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
+      return {kOne, kOne, kOne, kOne};
+    case VK_BORDER_COLOR_INT_OPAQUE_WHITE:
+      return {1, 1, 1, 1};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+VkResult CreateImageView(Device&, const VkImageViewCreateInfo* info, VkImageView* out) {
+  if (!info->image->memory) throw Refusal(fmt::format("{} is not bound to memory", info->image->whole.name));
+  const auto format = format_of(info->format);
+  if (!format)
+    throw Refusal(VK_ERROR_FORMAT_NOT_SUPPORTED, fmt::format("format {} is not there", int(info->format)));
+  auto made = std::make_unique<VkImageView_T>();
+  exec::ImageView& view = made->view;
+  view = exec::part_of(info->image->whole, range_of(*info->image, info->subresourceRange));
+  view.format = *format, view.shape = shape_of(info->viewType);
+  const VkComponentMapping& map = info->components;
+  view.swizzle = {component_of(map.r, exec::Component::Red), component_of(map.g, exec::Component::Green),
+                  component_of(map.b, exec::Component::Blue), component_of(map.a, exec::Component::Alpha)};
+  *out = made.release();
+  return VK_SUCCESS;
+}
+void DestroyImageView(Device&, VkImageView view) {
+  delete view;
+}
+
+VkResult CreateBufferView(Device&, const VkBufferViewCreateInfo* info, VkBufferView* out) {
+  const auto format = format_of(info->format);
+  if (!format)
+    throw Refusal(VK_ERROR_FORMAT_NOT_SUPPORTED, fmt::format("format {} is not there", int(info->format)));
+  *out = new VkBufferView_T{info->buffer, info->offset, info->range, *format};
+  return VK_SUCCESS;
+}
+void DestroyBufferView(Device&, VkBufferView view) {
+  delete view;
+}
+
+VkResult CreateSampler(Device&, const VkSamplerCreateInfo* info, VkSampler* out) {
+  exec::Sampler s;
+  s.mag = filter_of(info->magFilter == VK_FILTER_LINEAR),
+  s.min = filter_of(info->minFilter == VK_FILTER_LINEAR);
+  s.mip = filter_of(info->mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR);
+  s.wrap = {wrap_of(info->addressModeU), wrap_of(info->addressModeV), wrap_of(info->addressModeW)};
+  s.border = border_of(info->borderColor);
+  s.lod_bias = info->mipLodBias, s.min_lod = info->minLod, s.max_lod = info->maxLod;
+  s.unnormalized = info->unnormalizedCoordinates;
+  static_assert(int(exec::Comparison::Always) == VK_COMPARE_OP_ALWAYS);
+  if (info->compareEnable) s.compare = exec::Comparison(info->compareOp);
+  *out = new VkSampler_T{s};
+  return VK_SUCCESS;
+}
+void DestroySampler(Device&, VkSampler sampler) {
+  delete sampler;
+}
+
+}  // namespace glint::vulkan
