@@ -79,7 +79,10 @@ struct Image {
 };
 Image link(const std::vector<isa::Program>& programs);
 
-// Holds a hit group: indices into Image::shaders, or kNoShader.
+// A record whose handle is no group of the pipeline calls this. Its use is a fault.
+inline constexpr uint32_t kForeignShader = kNoShader - 1;
+
+// Holds a hit group: indices into Image::shaders, or kNoShader. In a foreign record `closest_hit` says so.
 struct HitGroup {
   uint32_t closest_hit = kNoShader, any_hit = kNoShader, intersection = kNoShader;
 };

@@ -13,6 +13,9 @@ namespace glint::exec {
 bool RayFaults::let_pass_record(const WarpContext& warp, int lane, std::string_view region, uint32_t record,
                                 size_t records, const std::string& how) {
   return gate_.let_pass(warp, lane, FaultKind::Record, [&] {
+    if (record < records)
+      return fmt::format("needs {} record {}{}, whose handle is no {} group of this pipeline", region, record,
+                         how, region);
     return fmt::format("needs {} record {}{}, and the binding table has {}", region, record, how, records);
   });
 }

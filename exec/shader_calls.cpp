@@ -50,7 +50,7 @@ bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
     const int lane = std::countr_zero(lanes);
     const size_t i = size_t(lane);
     const uint32_t record = world_.table.callable.number(warp.regs.read(inst.operand[0])[lane]);
-    const bool is_inside = record < world_.callable.size();
+    const bool is_inside = is_record(world_.callable, record);
     if (!is_inside && !ray_faults_.let_pass_record(warp, lane, "callable", record, world_.callable.size()))
         [[unlikely]]
       return false;
@@ -101,7 +101,7 @@ bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint
     if (hit)
       group =
           hit_group(world_, state.ray, effect == Effect::CallHit ? state.committed : state.candidate, record);
-    if (hit ? !group : record >= world_.miss.size()) [[unlikely]] {
+    if (hit ? !group : !is_record(world_.miss, record)) [[unlikely]] {
       const bool passes =
           hit ? ray_faults_.let_pass_hit_record(warp, lane, state.ray,
                                                 effect == Effect::CallHit ? state.committed : state.candidate)

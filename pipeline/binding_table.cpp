@@ -15,10 +15,6 @@ namespace {
 using exec::kHandleBytes;
 using isa::Stage;
 
-// These are shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that
-// the conformance set was recorded with.
-constexpr uint32_t kHandleAlignment = 32, kBaseAlignment = 64, kMaxStride = 4096;
-
 uint64_t round_up(uint64_t bytes, uint64_t to) {
   return (bytes + to - 1) / to * to;
 }

@@ -12,6 +12,10 @@ namespace glint::pipeline {
 
 inline constexpr uint32_t kNoGroup = 0xffff'ffff;
 
+// These are shaderGroupHandleAlignment, shaderGroupBaseAlignment and maxShaderGroupStride of the driver that
+// the conformance set was recorded with.
+inline constexpr uint32_t kHandleAlignment = 32, kBaseAlignment = 64, kMaxStride = 4096;
+
 // Corresponds to VkRayTracingShaderGroupCreateInfoKHR: it holds indices into Image::shaders, or
 // exec::kNoShader. A general group has a ray generation, miss or callable shader; a hit group has the others.
 struct ShaderGroup {

@@ -232,7 +232,7 @@ void SceneWorld::upload_images(const RenderJob& job, scenes::Scene* drain) {
   bind(kTextures, first, world.images.size() - first);
 }
 
-rt::EncodedBottom SceneWorld::encode_bottom(const RenderJob& job, size_t index, uint32_t threads) const {
+rt::EncodedStructure SceneWorld::encode_bottom(const RenderJob& job, size_t index, uint32_t threads) const {
   const Model& model = job.scene.models[index];
   rt::Geometry geometry;
   rt::Bounds box;
@@ -273,19 +273,19 @@ std::vector<rt::StructureInfo> SceneWorld::build_bottoms(const RenderJob& job) {
   const uint32_t threads = host_threads(job.threads);
   uint64_t all = 0;
   for (size_t i = 0; i < models.size(); ++i) all += num_primitives(models[i], uploaded_[i].indices);
-  std::map<size_t, rt::EncodedBottom> large;
+  std::map<size_t, rt::EncodedStructure> large;
   for (size_t i = 0; threads > 1 && i < models.size(); ++i)
     if (const uint64_t primitives = num_primitives(models[i], uploaded_[i].indices);
         primitives > kLeastLarge && primitives > all / (4 * threads))
       large.emplace(i, encode_bottom(job, i, threads));
   std::vector<rt::StructureInfo> bottoms;
-  OrderedWork<rt::EncodedBottom> work(models.size(), threads);
+  OrderedWork<rt::EncodedStructure> work(models.size(), threads);
   work.run(
       [&](size_t i) {
         const auto built = large.find(i);
         return built != large.end() ? std::move(built->second) : encode_bottom(job, i, 1);
       },
-      [&](size_t i, rt::EncodedBottom&& bottom) {
+      [&](size_t i, rt::EncodedStructure&& bottom) {
         bottoms.push_back(rt::place(memory_, name_of_model(models[i]), std::move(bottom)));
         structures.procedurals += models[i].is_procedural();
         structures.triangles += models[i].is_procedural() ? 0 : uploaded_[i].indices.size() / 3;

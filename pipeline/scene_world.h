@@ -51,7 +51,7 @@ class SceneWorld {
 
   SceneWorld(const RenderJob& job, scenes::Scene* drain);
   void upload_geometry(const RenderJob& job, scenes::Scene* drain);
-  rt::EncodedBottom encode_bottom(const RenderJob& job, size_t model, uint32_t threads) const;
+  rt::EncodedStructure encode_bottom(const RenderJob& job, size_t model, uint32_t threads) const;
   rt::Micromaps bake(const RenderJob& job, size_t model, const rt::MicromapFormat& format) const;
   void upload_images(const RenderJob& job, scenes::Scene* drain);
   std::vector<rt::StructureInfo> build_bottoms(const RenderJob& job);

@@ -57,15 +57,15 @@ static_assert(std::is_trivially_copyable_v<rt::StructureInfo>);
 
 }  // namespace
 
-rt::EncodedBottom StructureCache::encode(const std::string& name, const rt::BottomLevel& input,
-                                         const rt::BuildOptions& options, uint32_t threads) {
+rt::EncodedStructure StructureCache::encode(const std::string& name, const rt::BottomLevel& input,
+                                            const rt::BuildOptions& options, uint32_t threads) {
   if (primitives_of(input) < least_primitives_) {
     count(&Counts::built);
     return rt::encode_bottom(name, input, options, threads);
   }
   const std::string key = key_of(input, options);
   const Turn turn(*this, key);
-  rt::EncodedBottom out;
+  rt::EncodedStructure out;
   if (const std::optional<std::string> value = files_.find(key); value && value->size() >= sizeof out.info) {
     std::memcpy(&out.info, value->data(), sizeof out.info);
     out.bytes = mem::HostBlock(value->size() - sizeof out.info);

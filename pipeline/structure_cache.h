@@ -32,8 +32,8 @@ class StructureCache {
         files_({options.folder, ".bvh", options.build, options.max_bytes}) {}
 
   // Returns the same bytes as rt::encode_bottom.
-  rt::EncodedBottom encode(const std::string& name, const rt::BottomLevel& input,
-                           const rt::BuildOptions& options, uint32_t threads = 1);
+  rt::EncodedStructure encode(const std::string& name, const rt::BottomLevel& input,
+                              const rt::BuildOptions& options, uint32_t threads = 1);
   // Returns the counts. No encode() may be under way.
   const Counts& counts() const { return counts_; }
 

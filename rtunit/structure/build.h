@@ -74,17 +74,20 @@ struct StructureInfo {
   uint8_t contents = 0;     // as StructureHeader::contents
 };
 
-// Holds a bottom level as bytes that may lie anywhere. Its geometry is no longer needed. `info.address` is
-// not set.
-struct EncodedBottom {
+// Holds a structure as bytes that may lie anywhere, at a multiple of kLeafBytes. Its geometry is no longer
+// needed. `info.address` is not set.
+struct EncodedStructure {
   StructureInfo info;
   mem::HostBlock bytes;
 };
-// Encodes a bottom level on up to `threads` threads, which do not show in the bytes. Throws UserError when an
-// index is out of range or the tree is too deep for the ray stack.
-EncodedBottom encode_bottom(const std::string& name, const BottomLevel& input,
-                            const BuildOptions& options = {}, uint32_t threads = 1);
-StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedBottom bottom);
+// Encodes a bottom level on up to `threads` threads, which do not show in the bytes. A tree that is too deep
+// for the ray stack is built anew, balanced. Throws UserError when an index is out of range.
+EncodedStructure encode_bottom(const std::string& name, const BottomLevel& input,
+                               const BuildOptions& options = {}, uint32_t threads = 1);
+StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedStructure structure);
+// Returns a size that no structure of so many triangles or boxes (level 0) or instances (level 1) exceeds.
+// Micromaps come on top of it.
+uint64_t most_bytes(uint8_t level, uint64_t primitives, const BuildOptions& options = {});
 
 // Encodes a bottom level and places it in memory.
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
@@ -94,9 +97,14 @@ StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, c
 // "its transform ...", or "".
 std::string why_unreachable(const Instance& instance, const StructureInfo& bottom);
 
-// Throws UserError when an instance is unreachable, an index is out of range, a bottom level has another
-// node format or the trees are too deep for the ray stack. Instances of empty bottom levels are inactive and
-// keep their index.
+// Encodes a top level. Instances of empty bottom levels are inactive and keep their index. With `notes`,
+// instances that no ray can be taken into are inactive, too, and are noted there. Throws UserError when there
+// are such instances and no notes, an index is out of range, a bottom level has another node format or the
+// trees are too deep for the ray stack.
+EncodedStructure encode_top(const std::string& name, std::span<const Instance> instances,
+                            std::span<const StructureInfo> bottoms, const BuildOptions& options = {},
+                            std::vector<std::string>* notes = nullptr);
+// Encodes a top level and places it in memory. It has no notes.
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
                         std::span<const Instance> instances, std::span<const StructureInfo> bottoms,
                         const BuildOptions& options = {});

@@ -9,9 +9,12 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
 #include <cstddef>
 #include <fmt/format.h>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/check.h"
@@ -208,6 +211,54 @@ class Builder {
   RTCBVH bvh_;
 };
 
+// Makes the nodes of a balanced tree.
+class BalancedBuilder {
+ public:
+  explicit BalancedBuilder(uint32_t width) : width_(width) {}
+
+  const RawNode& build(std::span<BuildItem> items) {
+    std::vector<const void*> children;
+    split(items, uint32_t(std::min<size_t>(width_, items.size())), children);
+    nodes_.push_back(std::make_unique<uint64_t[]>(1 + children.size()));
+    auto* node = reinterpret_cast<RawNode*>(nodes_.back().get());
+    node->num_children = uint32_t(children.size());
+    set_children(node, const_cast<void**>(children.data()), unsigned(children.size()), nullptr);
+    return *node;
+  }
+
+ private:
+  // Appends `parts` nodes or leaves that hold the items.
+  void split(std::span<BuildItem> items, uint32_t parts, std::vector<const void*>& out) {
+    if (items.size() == 1) {
+      out.push_back(RawChild::leaf(reinterpret_cast<const RTCBuildPrimitive*>(items.data())));
+      return;
+    }
+    if (parts == 1) {
+      out.push_back(&build(items));
+      return;
+    }
+    Bounds middles = empty_bounds();
+    for (const BuildItem& item : items) extend(middles, {middle(item), middle(item)});
+    size_t axis = 0;
+    for (size_t a = 1; a < 3; ++a)
+      if (middles.high[a] - middles.low[a] > middles.high[axis] - middles.low[axis]) axis = a;
+    const size_t first = items.size() * (parts / 2) / parts;
+    std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(first), items.end(),
+                     [&](const BuildItem& a, const BuildItem& b) {
+                       return std::pair(middle(a)[axis], a.leaf) < std::pair(middle(b)[axis], b.leaf);
+                     });
+    split(items.subspan(0, first), parts / 2, out);
+    split(items.subspan(first), parts - parts / 2, out);
+  }
+  static std::array<float, 3> middle(const BuildItem& item) {
+    return {item.low[0] / 2 + item.high[0] / 2, item.low[1] / 2 + item.high[1] / 2,
+            item.low[2] / 2 + item.high[2] / 2};
+  }
+
+  uint32_t width_;
+  std::vector<std::unique_ptr<uint64_t[]>> nodes_;
+};
+
 }  // namespace
 
 Bounds empty_bounds() {
@@ -229,6 +280,16 @@ void build_tree(std::span<BuildItem> items, uint32_t width, uint32_t threads, Bu
     Builder builder(threads);
     flattener.run(builder.build(items, width), threads);
   }
+}
+
+// The items come in an order that threads may have changed.
+void build_balanced_tree(std::span<BuildItem> items, uint32_t width, BuildTree& tree) {
+  GLINT_CHECK(items.size() > 1, "a tree of {} leaves is never too deep", items.size());
+  std::sort(items.begin(), items.end(),
+            [](const BuildItem& a, const BuildItem& b) { return a.leaf < b.leaf; });
+  tree = {};
+  BalancedBuilder builder(width);
+  Flattener(tree).run(builder.build(items), 1);
 }
 
 }  // namespace glint::rt

@@ -30,6 +30,10 @@ struct alignas(32) BuildItem {
 // threads. The order of `items` changes.
 void build_tree(std::span<BuildItem> items, uint32_t width, uint32_t threads, BuildTree& tree);
 
+// Does the same without a look at areas: each node's leaves are halved by number, along the longest side of
+// the box of their middles, so that the tree is as flat as it can be.
+void build_balanced_tree(std::span<BuildItem> items, uint32_t width, BuildTree& tree);
+
 Bounds empty_bounds();
 inline void extend(Bounds& bounds, const Bounds& other) {
   for (size_t a = 0; a < 3; ++a) {

@@ -44,8 +44,8 @@ TEST_CASE("every node format writes the same bytes on one thread and on several"
   const BottomLevel bottom{{triangles(positions)}};
   for (const std::string& name : Registry<NodeFormat>::names()) {
     CAPTURE(name);
-    const EncodedBottom one = encode_bottom("b", bottom, options_of(name), 1),
-                        many = encode_bottom("b", bottom, options_of(name), 5);
+    const EncodedStructure one = encode_bottom("b", bottom, options_of(name), 1),
+                           many = encode_bottom("b", bottom, options_of(name), 5);
     REQUIRE(one.bytes.size() == many.bytes.size());
     CHECK(std::memcmp(one.bytes.data(), many.bytes.data(), one.bytes.size()) == 0);
   }

@@ -43,7 +43,7 @@ struct Strip {
   }
 };
 
-bool equal(const rt::EncodedBottom& a, const rt::EncodedBottom& b) {
+bool equal(const rt::EncodedStructure& a, const rt::EncodedStructure& b) {
   return a.bytes.size() == b.bytes.size() &&
          std::memcmp(a.bytes.data(), b.bytes.data(), a.bytes.size()) == 0 && a.info.nodes == b.info.nodes &&
          a.info.leaves == b.info.leaves && a.info.depth == b.info.depth &&
@@ -53,7 +53,7 @@ bool equal(const rt::EncodedBottom& a, const rt::EncodedBottom& b) {
 bool is_found(const Folder& folder, const rt::BottomLevel& level, const rt::BuildOptions& options = {},
               const std::string& build = "build 1") {
   StructureCache cache = folder.cache(2, build);
-  const rt::EncodedBottom out = cache.encode("it", level, options);
+  const rt::EncodedStructure out = cache.encode("it", level, options);
   CHECK(equal(out, rt::encode_bottom("it", level, options)));
   return cache.counts().found == 1;
 }

@@ -90,9 +90,9 @@ TEST_CASE("threads that build do not show in a structure's bytes") {
   procedural.aabbs = boxes;
   const BottomLevel level{{triangles(positions), procedural, stripped}};
   for (const std::string& format : Registry<NodeFormat>::names()) {
-    const EncodedBottom one = encode_bottom("b", level, {format.c_str()}, 1);
+    const EncodedStructure one = encode_bottom("b", level, {format.c_str()}, 1);
     CHECK(one.info.primitives > one.info.leaves);
-    const EncodedBottom several = encode_bottom("b", level, {format.c_str()}, 3);
+    const EncodedStructure several = encode_bottom("b", level, {format.c_str()}, 3);
     CAPTURE(format);
     REQUIRE(several.bytes.size() == one.bytes.size());
     CHECK(std::memcmp(several.bytes.data(), one.bytes.data(), one.bytes.size()) == 0);

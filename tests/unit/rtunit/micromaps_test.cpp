@@ -68,7 +68,7 @@ TEST_CASE("leaves with the same maps share them, and structures stay valid") {
   for (uint32_t i = 0; i < kPairs; ++i) maps.index.insert(maps.index.end(), {0, 1});
   const uint64_t plain = encode_bottom("it", bottom.level).bytes.size();
   bottom.add_micromaps(maps);
-  const EncodedBottom with = encode_bottom("it", bottom.level);
+  const EncodedStructure with = encode_bottom("it", bottom.level);
   CHECK(with.bytes.size() <= plain + 2 * kLeafBytes);
   const auto header = load<StructureHeader>(with.bytes.data());
   REQUIRE(header.micromaps != 0);
@@ -76,7 +76,7 @@ TEST_CASE("leaves with the same maps share them, and structures stay valid") {
   CHECK(table.num_maps == 2);
   CHECK(table.format() == maps.format);
   for (uint32_t threads : {2u, 3u}) {
-    const EncodedBottom again = encode_bottom("it", bottom.level, {}, threads);
+    const EncodedStructure again = encode_bottom("it", bottom.level, {}, threads);
     CHECK(std::equal(with.bytes.data(), with.bytes.data() + with.bytes.size(), again.bytes.data()));
   }
 }
