@@ -1,12 +1,12 @@
 // Is a small Vulkan program: what the tests of the driver need of an application, over the system's loader.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <utility>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 #include <vulkan/vulkan.h>
 
