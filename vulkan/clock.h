@@ -21,6 +21,7 @@ class DeviceClock {
 
   Cycle now() const { return Cycle(now_); }
   void add_launch(uint64_t warp_instructions) { now_ += double(warp_instructions) / issue_width_ + 1; }
+  void add_timed_launch(Cycle cycles) { now_ += double(cycles); }
   void add_transfer(uint64_t bytes) { now_ += double(bytes) / bytes_per_cycle_ + 1; }
 
  private:

@@ -37,7 +37,14 @@ VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, 
   return VK_SUCCESS;
 }
 
+// Says what ran, so that a user who does not know what can be timed sees it.
 void DestroyDevice(Device& device) {
+  const auto& [all, timed, cycles] = device.launches;
+  if (all && timed)
+    device.messages().info(fmt::format("{} of {} launches were timed: {} cycles", timed, all, cycles));
+  else if (all)
+    device.messages().info(
+        fmt::format("{} launches ran, none of them timed; GLINT_TIMING chooses some", all));
   delete &device;
 }
 

@@ -9,12 +9,13 @@
 
 #include "frontend/cache.h"
 #include "memsys/address_space.h"
+#include "pipeline/device.h"
 #include "vulkan/clock.h"
 #include "vulkan/instance.h"
 #include "vulkan/queue.h"
 
 struct VkDevice_T : glint::vulkan::Dispatchable {
-  explicit VkDevice_T(VkPhysicalDevice_T& of) : physical(of), clock(of.gpu) {}
+  explicit VkDevice_T(VkPhysicalDevice_T& of) : physical(of), clock(of.gpu), gpu(of.gpu) {}
 
   glint::vulkan::Messages& messages() const { return physical.instance.messages; }
   // Returns whether the application asked for a feature by its Vulkan name.
@@ -29,6 +30,11 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   VkDeviceSize allocated_bytes = 0;                              // of the heap
   uint32_t buffers_made = 0, images_made = 0, shaders_made = 0;  // They give objects names.
   glint::vulkan::DeviceClock clock;
+  glint::pipeline::Device gpu;  // runs launches
+  struct Launches {
+    uint64_t all = 0, timed = 0;
+    glint::Cycle cycles = 0;  // of those that were timed
+  } launches;
   bool is_lost = false;  // A launch did something that ends the device.
   VkQueue_T queue{*this};
 };

@@ -32,6 +32,11 @@ VkResult CreateInstance(const VkInstanceCreateInfo* info, VkInstance* out) {
       throw Refusal(VK_ERROR_EXTENSION_NOT_PRESENT,
                     fmt::format("there is no instance extension {}", info->ppEnabledExtensionNames[i]));
   auto made = std::make_unique<Instance>();
+  try {
+    made->settings = settings_of_environment();
+  } catch (const UserError& error) {
+    throw Refusal(VK_ERROR_INITIALIZATION_FAILED, error.what());
+  }
   if (const auto* messenger = find_in_chain<VkDebugUtilsMessengerCreateInfoEXT>(
           info, VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT)) {
     made->first_messenger = messenger_of(*messenger);

@@ -7,6 +7,7 @@
 #include "pipeline/params.h"
 #include "vulkan/announced.h"
 #include "vulkan/messages.h"
+#include "vulkan/settings.h"
 
 // Is the simulated GPU as applications see it before they make a device.
 struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
@@ -20,6 +21,7 @@ struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
 };
 
 struct VkInstance_T : glint::vulkan::Dispatchable {
+  glint::vulkan::Settings settings;
   glint::vulkan::Messages messages;
   VkDebugUtilsMessengerEXT_T first_messenger;  // of VkInstanceCreateInfo
   VkPhysicalDevice_T physical{*this};

@@ -26,6 +26,25 @@ void say_results(const Queue& queue, const std::string& pipeline, const exec::Fa
   messages.warning(fmt::format("launch of {}{}:\n{}", pipeline, label, faults.to_string()));
 }
 
+// Runs a world on the machine that the user has chosen for this launch.
+void run(Queue& queue, VkPipeline_T& pipeline, const exec::World& world, exec::PrintLog& prints) {
+  Device& device = queue.device;
+  const Settings& settings = device.physical.instance.settings;
+  const LaunchFacts facts{device.launches.all++, pipeline.launches++, pipeline.name, queue.labels};
+  pipeline::LaunchMode mode;
+  mode.timing = settings.timing.takes(facts), mode.threads = settings.threads;
+  const pipeline::RenderResult result = device.gpu.run(world, mode, {});
+  if (mode.timing) {
+    device.clock.add_timed_launch(result.cycles);
+    ++device.launches.timed, device.launches.cycles += result.cycles;
+    device.messages().info(
+        fmt::format("dispatch {}: {}, {} cycles", facts.number, pipeline.name, result.cycles));
+  } else {
+    device.clock.add_launch(result.warp_instructions);
+  }
+  say_results(queue, pipeline.name, result.faults, prints);
+}
+
 // Frees what the builder has allocated, also when the launch ends with an exception.
 class Allocations {
  public:
@@ -59,12 +78,8 @@ void launch(Queue& queue, const Bindings& bound, const std::array<uint32_t, 3>& 
   builder.world.prints = &prints;
   builder.world.robust_buffers = device.has("robustBufferAccess");
   builder.world.robust_images = device.has("robustImageAccess");
-  // Choice: without robust access a fault is said and let pass, as a GPU's driver does not stop either.
-  builder.world.on_fault = exec::OnFault::Warn;
-  const pipeline::RenderResult result =
-      pipeline::run_world(builder.finish(), device.physical.gpu, false, false, 1, {});
-  device.clock.add_launch(result.warp_instructions);
-  say_results(queue, bound.pipeline->name, result.faults, prints);
+  builder.world.on_fault = device.physical.instance.settings.on_fault;
+  run(queue, *bound.pipeline, builder.finish(), prints);
 }
 
 }  // namespace glint::vulkan

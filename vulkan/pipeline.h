@@ -28,6 +28,7 @@ struct VkPipeline_T {
   std::string entry_point, name;
   std::map<uint32_t, uint64_t> constants;  // by constant_id
   VkPipelineLayout_T layout;
+  uint64_t launches = 0;  // so far
 
   // Returns the compiled shader. Throws UserError or UnsupportedError when it cannot be compiled.
   const glint::pipeline::LinkedShaders& compiled(VkDevice_T& device);

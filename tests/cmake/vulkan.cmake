@@ -6,10 +6,10 @@ if(TARGET glint_vulkan AND VULKAN_LOADER)
   set(manifest ${PROJECT_BINARY_DIR}/glint_icd.json)
   # The client links the compiler, and with it glslang, that the driver has in it too.
   glint_test(vulkan LINKS glint::frontend ${VULKAN_LOADER}
-    SOURCES vulkan/client.cpp vulkan/compute_test.cpp vulkan/image_test.cpp vulkan/queue_test.cpp vulkan/wrong_use_test.cpp)
+    SOURCES vulkan/client.cpp vulkan/compute_test.cpp vulkan/image_test.cpp vulkan/queue_test.cpp vulkan/timing_test.cpp vulkan/wrong_use_test.cpp)
   add_dependencies(test_vulkan glint_vulkan)
   set_tests_properties(vulkan PROPERTIES ENVIRONMENT "VK_DRIVER_FILES=${manifest};VK_ICD_FILENAMES=${manifest}")
-  foreach(name vulkaninfo client)
+  foreach(name vulkaninfo client timing)
     add_test(NAME vulkan_${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/${name}_test.py ${manifest} ${PROJECT_SOURCE_DIR} $<TARGET_FILE:test_vulkan>)
     set_tests_properties(vulkan_${name} PROPERTIES SKIP_RETURN_CODE 77)
   endforeach()

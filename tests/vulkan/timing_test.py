@@ -1,0 +1,40 @@
+# Tests that the user chooses which launches are timed, and that a launch has the same cycles whatever else is timed.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: timing_test.py MANIFEST SOURCE_DIR CLIENT"""
+import pathlib
+import re
+import sys
+
+import vulkan_case
+from vulkan_case import VulkanTest
+
+CLIENT = pathlib.Path(sys.argv[3]).resolve()
+
+
+class Timing(VulkanTest):
+    def cycles(self, **environment):
+        """Returns the cycles of the launches that were timed, by number."""
+        result = self.run_on_glint(CLIENT, "[three_launches]", **environment)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        return {int(n): int(c) for n, c in re.findall(r"dispatch (\d+): shader \d+, (\d+) cycles", result.stdout)}
+
+    def test_each_way_to_choose_takes_its_launches_with_the_same_cycles(self):
+        every = self.cycles(GLINT_TIMING="all")
+        self.assertEqual(sorted(every), [0, 1, 2])
+        self.assertEqual(every[0], every[2], "the caches are cold at each launch")
+        for choice, taken in (("none", []), ("dispatch 1-2", [1, 2]), ("first 1", [0, 1]), ("label:last", [2]),
+                              ("shader:shader 2", [1]), ("dispatch 0; label:last", [0, 2])):
+            with self.subTest(choice):
+                self.assertEqual(self.cycles(GLINT_TIMING=choice), {number: every[number] for number in taken})
+
+    def test_threads_of_the_host_change_no_cycle(self):
+        self.assertEqual(self.cycles(GLINT_TIMING="all", GLINT_THREADS="2"), self.cycles(GLINT_TIMING="all"))
+
+    def test_a_choice_that_there_is_not_is_refused_by_name(self):
+        for name, value in (("GLINT_TIMING", "sometimes"), ("GLINT_THREADS", "many"), ("GLINT_ON_FAULT", "cry")):
+            result = self.run_on_glint(CLIENT, "[three_launches]", **{name: value})
+            self.assertNotEqual(result.returncode, 0)
+            self.assertRegex(result.stderr, f"{name}.*'{value}'")
+
+
+vulkan_case.main()

@@ -1,0 +1,47 @@
+// Reads what the user asks of the driver. Its environment is the driver's command line.
+// SPDX-License-Identifier: Apache-2.0
+#include "vulkan/settings.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <fmt/format.h>
+
+#include "base/diagnostics.h"
+
+namespace glint::vulkan {
+namespace {
+
+constexpr uint32_t kMostThreads = 1024;
+
+// Returns the value of a variable, or "" when it is not set.
+std::string value_of(const char* variable) {
+  const char* const value = std::getenv(variable);
+  return value ? value : "";
+}
+
+uint32_t threads_of(const std::string& text) {
+  uint32_t out = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (error != std::errc() || end != text.data() + text.size() || out == 0 || out > kMostThreads)
+    throw UserError(
+        fmt::format("GLINT_THREADS is '{}': it has to be a number from 1 to {}", text, kMostThreads));
+  return out;
+}
+
+exec::OnFault on_fault_of(const std::string& text) {
+  for (const exec::OnFault each : {exec::OnFault::Stop, exec::OnFault::Warn})
+    if (text == exec::name_of(each)) return each;
+  throw UserError(fmt::format("GLINT_ON_FAULT is '{}': it has to be 'warn' or 'stop'", text));
+}
+
+}  // namespace
+
+Settings settings_of_environment() {
+  Settings out;
+  out.timing = LaunchSelection::parse(value_of("GLINT_TIMING"));
+  if (const std::string text = value_of("GLINT_THREADS"); !text.empty()) out.threads = threads_of(text);
+  if (const std::string text = value_of("GLINT_ON_FAULT"); !text.empty()) out.on_fault = on_fault_of(text);
+  return out;
+}
+
+}  // namespace glint::vulkan

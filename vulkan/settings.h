@@ -1,0 +1,21 @@
+// Reads what the user asks of the driver. Its environment is the driver's command line.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "exec/fault.h"
+#include "vulkan/launch_selection.h"
+
+namespace glint::vulkan {
+
+struct Settings {
+  LaunchSelection timing;                        // GLINT_TIMING: the launches that the timing machine runs
+  uint32_t threads = 1;                          // GLINT_THREADS: threads of the host for a launch
+  exec::OnFault on_fault = exec::OnFault::Warn;  // GLINT_ON_FAULT: "warn" or "stop"
+};
+
+// Returns the settings of the process. Throws UserError that names the variable and what it may be.
+Settings settings_of_environment();
+
+}  // namespace glint::vulkan
