@@ -1,8 +1,9 @@
-// Rewrites lengths of arrays and ends of any-hit shaders word by word.
+// Rewrites lengths of arrays, sizes of blocks and ends of any-hit shaders word by word.
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/spirv/module_repairs.h"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <map>
 #include <set>
@@ -39,6 +40,30 @@ bool has_calls(const std::vector<uint32_t>& spirv) {
   bool found = false;
   for_each(spirv, [&](spv::Op op, std::span<const uint32_t>) { found |= op == OpFunctionCall; });
   return found;
+}
+
+std::vector<uint32_t> with_local_size(std::vector<uint32_t> spirv) {
+  uint32_t size = 0;                                    // id of the constant
+  std::map<uint32_t, uint32_t> numbers;                 // scalar constants by id
+  std::map<uint32_t, std::array<uint32_t, 3>> vectors;  // ids of the parts
+  for_each(spirv, [&](spv::Op op, std::span<const uint32_t> w) {
+    if (op == OpDecorate && w.size() == 4 && spv::Decoration(w[2]) == spv::Decoration::BuiltIn &&
+        spv::BuiltIn(w[3]) == spv::BuiltIn::WorkgroupSize)
+      size = w[1];
+    if ((op == OpConstant || op == OpSpecConstant) && w.size() == 4) numbers[w[2]] = w[3];
+    if ((op == OpConstantComposite || op == OpSpecConstantComposite) && w.size() == 6)
+      vectors[w[2]] = {w[3], w[4], w[5]};
+  });
+  const auto parts = vectors.find(size);
+  if (size == 0 || parts == vectors.end()) return spirv;
+  for (size_t at = kHeaderWords; at < spirv.size() && spirv[at] >> 16 != 0; at += spirv[at] >> 16) {
+    if (op_of(spirv[at]) != OpExecutionMode || spirv[at] >> 16 != 6) continue;
+    if (spv::ExecutionMode(spirv[at + 2]) != spv::ExecutionMode::LocalSize) continue;
+    for (size_t axis = 0; axis < 3; ++axis)
+      if (const auto number = numbers.find(parts->second[axis]); number != numbers.end())
+        spirv[at + 3 + axis] = number->second;
+  }
+  return spirv;
 }
 
 std::vector<uint32_t> with_positive_lengths(std::vector<uint32_t> spirv, std::vector<std::string>* names) {

@@ -21,6 +21,10 @@ std::vector<uint32_t> with_positive_lengths(std::vector<uint32_t> spirv, std::ve
 // continue construct of a loop.
 std::vector<uint32_t> with_ends_that_return(const std::vector<uint32_t>& spirv);
 
+// Writes the size that the constant decorated WorkgroupSize has into the execution mode LocalSize, which it
+// overrides (SPIR-V specification, 3.6). The optimiser removes that constant where no code reads it.
+std::vector<uint32_t> with_local_size(std::vector<uint32_t> spirv);
+
 // Returns true when the module still has calls.
 bool has_calls(const std::vector<uint32_t>& spirv);
 

@@ -205,7 +205,8 @@ std::vector<uint32_t> simplified(std::vector<uint32_t> spirv, const std::string&
                                  Validity validity, PassTimes* times) {
   check_limits(spirv, name);
   if (validity == Validity::Unknown) check_validity(spirv, name, times);
-  spirv = with_references(with_lengths(with_standard_traces(spirv), name, warnings));
+  spirv =
+      with_references(with_lengths(with_standard_traces(with_local_size(std::move(spirv))), name, warnings));
   const InlinedSize size = check_inlined_size(spirv, name);
   Report report{{}, times};
   for (const PassList& passes : {passes_of(spirv, size), inlining_only()}) {
