@@ -24,7 +24,8 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       view_(context.turn ? std::make_unique<exec::MemoryView>() : nullptr),
       counts_(context.parent, context.name, context.world.image->code.size()),
       code_(CodeSupply::make(params_, context.world, context.places, context.l1, &counts_.stats)),
-      warps_(occupancy(params, context.world.image->num_registers), params_, context.world, *table_,
+      places_(occupancy(params, context.world.image->num_registers)),
+      warps_(num_slots(params, context.world), params_, context.world, *table_,
              code_ ? code_->fetch() : nullptr, observers_),
       lsu_(params, context.l1),
       memory_(parts(), {lsu_,
@@ -32,7 +33,8 @@ CoreCell::CoreCell(const Params& params, const Context& context)
                         table_layout(context.world, context.tables),
                         context.turn}),
       constants_(parts(), code_ ? code_->constants() : nullptr),
-      rays_(parts(), context.rt),
+      parking_(ParkingLot::make(parts(), memory_, places_)),
+      rays_(parts(), context.rt, parking_.get()),
       barriers_(parts()),
       reorder_(ReorderUnit::make(parts(), memory_)),
       issue_(parts(), {memory_, constants_, rays_, barriers_, reorder_.get()}, doors_),
@@ -42,9 +44,13 @@ CoreCell::CoreCell(const Params& params, const Context& context)
 
 CoreCell::~CoreCell() = default;
 
+uint32_t CoreCell::num_slots(const Params& params, const exec::World& world) {
+  return num_warp_slots(params, occupancy(params, world.image->num_registers));
+}
+
 uint64_t CoreCell::local_bytes(const Params& params, const exec::World& world) {
   const LocalLayout layout{0, world.local_bytes / 4};
-  return layout.bytes_per_warp() * occupancy(params, world.image->num_registers);
+  return layout.bytes_per_warp() * num_slots(params, world);
 }
 
 rt::TableLayout CoreCell::table_layout(const exec::World& world, Address base) {
@@ -52,7 +58,7 @@ rt::TableLayout CoreCell::table_layout(const exec::World& world, Address base) {
 }
 
 uint64_t CoreCell::table_bytes(const Params& params, const exec::World& world) {
-  return table_layout(world, 0).bytes_per_warp() * occupancy(params, world.image->num_registers);
+  return table_layout(world, 0).bytes_per_warp() * num_slots(params, world);
 }
 
 uint64_t CoreCell::code_bytes(const Params& params, const exec::World& world) {
@@ -71,7 +77,8 @@ LaunchNeeds CoreCell::needs_of(const exec::World& world, uint32_t shared_per_war
 
 bool CoreCell::has_room() const {
   const uint32_t blocks = warps_.blocks().num_taken();
-  return warps_.num_resident() + executor_.warps_per_block() <= warps_.size() &&
+  return num_held() + executor_.warps_per_block() <= places_ &&
+         warps_.num_resident() + executor_.warps_per_block() <= warps_.size() &&
          blocks < warps_.blocks().size() && (blocks + 1) * shared_per_block_ <= params_.shared_bytes;
 }
 
@@ -137,7 +144,9 @@ void CoreCell::step(Cycle now) {
   if (reorder_) reorder_->tick(now);
   issue(now);
   active_until_ = now + 1;
-  if (warps_.num_resident() != residents_) [[unlikely]] {
+  if (parking_) [[unlikely]]
+    rays_.let_return(now);
+  if (warps_.num_resident() != residents_ || num_held() != held_) [[unlikely]] {
     count_residents(now);
     if (residents_ == 0) become_empty(now + 1);
   }
@@ -166,11 +175,12 @@ uint32_t CoreCell::find_open_doors(uint32_t watching) const {
   return open;
 }
 
-// Notes that the number of resident warps may be another one from cycle `now` on.
+// Notes that the numbers of resident warps and of held places may be others from cycle `now` on.
 void CoreCell::count_residents(Cycle now) {
-  counts_.stats.resident_cycles += (now - residents_since_) * residents_;
+  counts_.stats.resident_cycles += (now - residents_since_) * held_;
   residents_since_ = now;
   residents_ = warps_.num_resident();
+  held_ = num_held();
 }
 
 // Notes that the core has no warp from cycle `now` on, which is the reason of its cycles then.

@@ -17,8 +17,10 @@
 #include "core/lsu.h"
 #include "core/memory_accesses.h"
 #include "core/params.h"
+#include "core/parking_lot.h"
 #include "core/ray_door.h"
 #include "core/reorder_unit.h"
+#include "core/residency.h"
 #include "core/warp_slots.h"
 #include "engine/engine.h"
 #include "exec/executor.h"
@@ -67,6 +69,9 @@ class CoreCell final : public Cell {
 
   // These serve launching, between windows only.
   uint32_t num_slots() const { return warps_.size(); }
+  // Returns the number of slots of a core, which is larger than that of warps that can run when warps may
+  // give up their places (core/parking.h).
+  static uint32_t num_slots(const Params& params, const exec::World& world);
   uint32_t num_resident() const { return warps_.num_resident(); }
   // Returns a resident warp for which `is_wanted` holds, in the order of slots, or null.
   template <class IsWanted>
@@ -75,15 +80,19 @@ class CoreCell final : public Cell {
       if (warps_.is_resident(slot) && is_wanted(warps_[slot].warp)) return &warps_[slot].warp;
     return nullptr;
   }
-  // Returns whether there is room for a whole block: warp slots, shared memory, and a block slot. Model: a
-  // warp's slot and registers are free when the warp has ended; hardware keeps them until the block has
-  // ended.
+  // Returns whether there is room for a whole block: places and slots of warps, shared memory, and a block
+  // slot. Model: a warp's slot and registers are free when the warp has ended; hardware keeps them until the
+  // block has ended.
   bool has_room() const;
   // Returns how many blocks and warps fit at a time, and what limits them.
   static LaunchNeeds needs_of(const exec::World& world, uint32_t shared_per_warp = 0);
   // Puts block `block_index` of the launch into the lowest free slots. Its first instructions can issue at
   // `ready`.
   void launch(Cycle now, uint32_t block_index, Cycle ready);
+  // Notes that no block of the launch is left.
+  void end_of_blocks() {
+    if (parking_) parking_->end_of_blocks();
+  }
 
   // These implement Cell.
   void advance(Cycle from, Cycle until) override;
@@ -138,6 +147,8 @@ class CoreCell final : public Cell {
   void step(Cycle now);
   void issue(Cycle now);
   uint32_t find_open_doors(uint32_t watching) const;
+  // Returns the number of warps that hold registers.
+  uint32_t num_held() const { return warps_.num_resident() - (parking_ ? parking_->num_parked() : 0); }
   void count_residents(Cycle now);
   void become_empty(Cycle now);
   CoreParts parts() { return {params_, world_, *table_, executor_, warps_, counts_, observers_}; }
@@ -154,18 +165,20 @@ class CoreCell final : public Cell {
   CoreCounts counts_;
   CoreObservers observers_;
   const std::unique_ptr<CodeSupply> code_;  // null when instructions and constants are always present
+  const uint32_t places_;                   // warps that can run at a time
   WarpSlots warps_;
   Lsu lsu_;
   const Doors doors_{lsu_, rt_};
   MemoryAccesses memory_;
   ConstantPort constants_;
+  const std::unique_ptr<ParkingLot> parking_;  // null when warps keep their places
   RayDoor rays_;
   BarrierUnit barriers_;
   const std::unique_ptr<ReorderUnit> reorder_;  // null when threads stay in their lanes
   IssueStage issue_;
-  exec::Seat seat_;         // the seat of the warp launched last
-  Cycle block_start_ = 0;   // when the first instructions of the block launched last can issue
-  uint32_t residents_ = 0;  // resident warps since cycle residents_since_
+  exec::Seat seat_;                    // the seat of the warp launched last
+  Cycle block_start_ = 0;              // when the first instructions of the block launched last can issue
+  uint32_t residents_ = 0, held_ = 0;  // resident warps and held places since cycle residents_since_
   Cycle residents_since_ = 0;
   Cycle active_until_ = 0;  // nothing has happened in this cycle or after it
   IntervalSampler sampler_;

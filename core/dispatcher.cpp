@@ -22,6 +22,8 @@ void Dispatcher::dispatch(Cycle now) {
       if (done() || !core->has_room()) continue;
       core->launch(now, next_++, ready);
       any = true;
+      if (done())
+        for (CoreCell* each : cores_) each->end_of_blocks();
     }
   }
 }

@@ -4,16 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <utility>
 
-#include "base/diagnostics.h"
 #include "base/params.h"
 #include "base/registry.h"
 #include "base/types.h"
 #include "core/code_params.h"
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
+#include "core/parking.h"
 #include "core/reorder.h"
 #include "exec/warp_layout.h"
 #include "isa/op_row.h"
@@ -261,6 +260,8 @@ struct Params {
   PolicyChoice<OpTimes> op_times{"by_unit"};
   PolicyChoice<Reorder> reorder{"none"};
   ReorderParams reordering;
+  PolicyChoice<Parking> parking{"none"};
+  ParkingLotParams parking_lot;
   Units units;
   // An H200 has a crossing of 1 cycle: a result takes 4 cycles within a pipe and 5 to another, or 17 and 18
   // from the special-function unit. It has a guard delay of 9 cycles: a comparison's result selects after 4
@@ -311,6 +312,10 @@ struct Params {
         policy(&Params::reorder, "reorder",
                "Selects where threads of a core's warps are regrouped, and what they are sorted by."),
         section(&Params::reordering, "reordering", "Parameters of the regrouping of threads."),
+        policy(&Params::parking, "parking",
+               "Selects when a warp gives up its place in its core while its rays are in the RT unit."),
+        section(&Params::parking_lot, "parking_lot",
+                "Parameters of the warps that have given up their places."),
         section(&Params::units, "units", "Latencies and initiation intervals of the execution units."),
         param(&Params::pipe_crossing, "pipe_crossing", "cycle",
               "Extra cycles before an instruction on another pipe can read a result.", 0, 100),
@@ -367,30 +372,5 @@ struct Params {
             0, uint64_t{1} << 40)};
   }
 };
-
-// Returns the number of warps that fit when each lane holds `num_registers` registers, or 0 when not even one
-// does.
-uint32_t occupancy(const Params& params, uint32_t num_registers);
-
-// Says what a launch asks of a core.
-struct LaunchNeeds {
-  uint32_t registers = 1;     // registers per lane
-  uint32_t warps = 1;         // warps per block; 1 without blocks
-  uint32_t shared_bytes = 0;  // bytes of shared memory per block
-  bool has_blocks = false;
-};
-struct Residency {
-  // Names the resource of a core that is used up first. When several are used up at once, it is the first of
-  // them in this order.
-  enum class Limit : uint8_t { Warps, Registers, Blocks, SharedMemory } limit = Limit::Warps;
-  uint32_t blocks = 0, warps = 0;
-};
-std::string_view name_of(Residency::Limit limit);
-Residency residency(const Params& params, const LaunchNeeds& needs);
-
-// Reports a program that cannot run on such a core, or a block that does not fit.
-void check(const Params& params, uint32_t num_registers, Diagnostics& diagnostics);
-void check_block(const Params& params, uint32_t num_registers, uint64_t threads, uint32_t shared_bytes,
-                 Diagnostics& diagnostics);
 
 }  // namespace glint::core

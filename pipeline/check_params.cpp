@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/residency.h"
 #include "memsys/request.h"
 #include "rtunit/unit/rt_unit.h"
 
@@ -38,11 +39,28 @@ void check_code(const core::Params& p, uint32_t line, Diagnostics& diagnostics) 
     check_cache("core.constant.size", p.constant.size, p.constant.ways, p.constant.line, diagnostics);
 }
 
+void check_parking(const core::Params& core, Diagnostics& diagnostics) {
+  if (!core.parking.make({})->is_used()) return;
+  const uint32_t slots = core::num_warp_slots(core, core.warps),
+                 most = core.schedulers * core::kMaxWarpsPerScheduler;
+  if (slots > most)
+    diagnostics.error(
+        {}, fmt::format("'core.warps' and 'core.parking_lot.warps' are {} warps together, expected at "
+                        "most {} ({} for each of {} schedulers)",
+                        slots, most, core::kMaxWarpsPerScheduler, core.schedulers));
+  if (core.reorder.make({})->where() != core::Reorder::Where::Nowhere)
+    diagnostics.error(
+        {}, fmt::format("core.parking = \"{}\" does not go with core.reorder = \"{}\": threads that "
+                        "change their warps would wait for warps without a place",
+                        core.parking.name, core.reorder.name));
+}
+
 }  // namespace
 
 void check(const GpuParams& params, Diagnostics& diagnostics) {
   mem::check(params.memory, diagnostics, "memory.");
   check_code(params.core, params.memory.line, diagnostics);
+  check_parking(params.core, diagnostics);
   if (params.rt.request_bytes % mem::kSectorBytes)
     diagnostics.error({},
                       fmt::format("'rt.request_bytes' is {}, expected a multiple of the sector of {} bytes",

@@ -12,6 +12,7 @@
 #include "base/profile_table.h"
 #include "base/stats.h"
 #include "base/trace_table.h"
+#include "core/residency.h"
 #include "exec/executor.h"
 #include "frontend/compile.h"
 #include "pipeline/launch_watch.h"

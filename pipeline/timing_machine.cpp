@@ -82,7 +82,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
     if (const uint64_t bytes = core::CoreCell::table_bytes(params_.core, world))
       rt.tables = core::CoreCell::table_layout(world, reserves_.take(bytes));
     if (const uint64_t bytes = rt::RtUnit::stack_bytes_per_warp(params_.rt))
-      rt.stacks = reserves_.take(bytes * params_.core.warps);
+      rt.stacks = reserves_.take(bytes * core::num_warp_slots(params_.core, params_.core.warps));
     if (const uint64_t bytes = rt::RtUnit::pool_bytes(params_.rt)) rt.ray_states = reserves_.take(bytes);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = reserves_.take(core::CoreCell::local_bytes(params_.core, world));

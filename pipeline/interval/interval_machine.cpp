@@ -9,6 +9,7 @@
 #include "base/num_lanes.h"
 #include "core/coalesce.h"
 #include "core/core_cell.h"
+#include "core/residency.h"
 
 namespace glint::pipeline {
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scripts that use this module are called with GLINT SOURCE_DIR [SUITE...]."""
 import base64
+import csv
 import json
 import os
 import pathlib
@@ -43,6 +44,11 @@ class GlintTest(unittest.TestCase):
         for part in parts:
             self.assertIn(part, done.stderr)
         return done
+
+    def statistics(self, folder):
+        """Returns the value of each statistic of the run in `folder`, by path."""
+        with (self.folder / folder / "stats.csv").open(newline="") as file:
+            return {row["path"]: float(row["value"]) for row in csv.DictReader(file)}
 
 
 def read_png(path):

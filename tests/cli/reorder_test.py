@@ -1,7 +1,6 @@
 # Tests that regrouping threads changes no picture, print or cost of a thread, and that it makes warps diverge less.
 # SPDX-License-Identifier: Apache-2.0
 """usage: reorder_test.py GLINT SOURCE_DIR"""
-import csv
 import re
 import shutil
 
@@ -26,10 +25,9 @@ class ReorderTest(GlintTest):
     def sums(self, out):
         """Returns each statistic of the run, added up over the parts of the machine."""
         total = {}
-        with (self.folder / out / "stats.csv").open() as file:
-            for row in csv.DictReader(file):
-                path = re.sub(r"\[\d+\]", "", row["path"])
-                total[path] = total.get(path, 0.0) + float(row["value"])
+        for path, value in self.statistics(out).items():
+            path = re.sub(r"\[\d+\]", "", path)
+            total[path] = total.get(path, 0.0) + value
         return total
 
 

@@ -4,6 +4,7 @@ glint_test(unit_core_timing LINKS glint::pipeline
 glint_test(timing_core LINKS glint::pipeline SOURCES timing/core_test.cpp timing/core_limits_test.cpp timing/skip_test.cpp timing/block_test.cpp)
 glint_test(contract_issue_scheduler LINKS glint::core SOURCES contract/issue_scheduler_test.cpp)
 glint_test(contract_reorder LINKS glint::core SOURCES contract/reorder_test.cpp)
+glint_test(contract_parking LINKS glint::core SOURCES contract/parking_test.cpp)
 glint_test(contract_warp_layout LINKS glint::pipeline SOURCES contract/warp_layout_test.cpp)
 glint_test(timing_hazards LINKS glint::pipeline SOURCES timing/hazard_test.cpp)
 glint_test(timing_code LINKS glint::pipeline SOURCES timing/code_cache_test.cpp timing/core_code_test.cpp)

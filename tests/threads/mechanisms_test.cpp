@@ -66,6 +66,11 @@ const std::vector<Mechanism> kMechanisms = {
        p.core.reorder = PolicyChoice<core::Reorder>("by_shader_record");
        p.core.reordering = {.batch = 2, .timeout = 700};
      }},
+    {"warps that give up their places",
+     [](GpuParams& p) {
+       p.core.parking = PolicyChoice<core::Parking>("at_rays");
+       p.core.warps = 4;
+     }},
     {"two RT entries", [](GpuParams& p) { p.rt.mshr_entries = 2; }},
     {"Vulkan-Sim's stores and headers",
      [](GpuParams& p) {

@@ -1,10 +1,9 @@
 // Tests occupancy: how many warps and blocks a core holds.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/params.h"
-
 #include <tuple>
 #include <vector>
 
+#include "core/residency.h"
 #include "tests/support/catch.h"
 
 namespace glint::core {

@@ -1,6 +1,6 @@
 // Computes how many warps and blocks fit into a core, and what limits them.
 // SPDX-License-Identifier: Apache-2.0
-#include "core/params.h"
+#include "core/residency.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -22,6 +22,10 @@ uint32_t registers_per_warp(uint32_t num_registers) {
 
 uint32_t occupancy(const Params& params, uint32_t num_registers) {
   return std::min(params.warps, params.registers / registers_per_warp(num_registers));
+}
+
+uint32_t num_warp_slots(const Params& params, uint32_t places) {
+  return places + (params.parking.make({})->is_used() ? params.parking_lot.warps : 0);
 }
 
 std::string_view name_of(Residency::Limit limit) {
