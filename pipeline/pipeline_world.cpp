@@ -26,12 +26,6 @@ bool traces_from(const Modules& modules, isa::Stage stage) {
   });
 }
 
-std::vector<isa::Program> programs_of(const Modules& modules) {
-  std::vector<isa::Program> out;
-  for (const ShaderModule& module : modules.all()) out.push_back(module.program);
-  return out;
-}
-
 std::vector<frontend::Binding> bindings_of(const Modules& modules) {
   std::vector<frontend::Binding> out;
   for (const auto& [place, use] : modules.bindings()) out.push_back(use.binding);
@@ -73,35 +67,66 @@ std::string title(const std::string& name, const Slot& slot) {
 }  // namespace
 
 PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuParams& gpu)
-    : description_(description),
-      modules_(description_, compiler_for(gpu)),
-      shaders_(programs_of(modules_), bindings_of(modules_), gpu,
-               description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache),
-      builder_(shaders_, memory_) {
+    : description_(description), modules_(description_, compiler_for(gpu)) {
   warnings = modules_.warnings;
   check_pipeline(description_, modules_, warnings);
-  set_launch();
+  for (const LaunchDescription& launch : description_.launches) link(launch, gpu);
+  for (const Built& launch : launches_) set_size(launch);
   upload_buffers();
   upload_images();
   add_samplers();
   const uint32_t stack_need = build_structures(gpu);
-  if (description_.raygen) fill_records();
-  set_push_constants();
+  for (const Built& launch : launches_) {
+    if (launch.description.raygen) fill_records(launch);
+    set_push_constants(launch);
+  }
   errors_.throw_if_errors();
   // Only bindings that no code uses are left, because check_pipeline() refuses the others.
-  builder_.finish(stack_need);
+  for (const Built& launch : launches_) launch.builder->finish(stack_need);
 }
 
-void PipelineWorld::set_launch() {
-  if (!description_.compute.empty())
-    return builder_.set_blocks(modules_.index_of(description_.compute), description_.launch,
-                               description_.compute_where);
+// A file with one launch links every shader that it names.
+bool PipelineWorld::uses(const LaunchDescription& launch, const ShaderModule& module) const {
+  if (description_.launches.size() == 1) return true;
+  const isa::Stage stage = module.reflection.stage;
+  if (!launch.compute.empty()) return module.name == launch.compute;
+  if (stage != isa::Stage::RayGeneration) return stage != isa::Stage::Compute;
+  const RecordDescription& raygen = *launch.raygen;
+  if (raygen.group.empty()) return module.name == raygen.inlined.general;
+  return std::any_of(description_.groups.begin(), description_.groups.end(), [&](const auto& group) {
+    return group.name == raygen.group && group.general == module.name;
+  });
+}
+
+void PipelineWorld::link(const LaunchDescription& launch, const GpuParams& gpu) {
+  Built built{launch, {}, {}, {}};
+  std::vector<isa::Program> programs;
+  for (const ShaderModule& module : modules_.all()) {
+    const bool is_used = uses(launch, module);
+    built.number.push_back(is_used ? uint32_t(programs.size()) : exec::kNoShader);
+    if (is_used) programs.push_back(module.program);
+  }
+  frontend::ShaderCache* const cache =
+      description_.shaders.empty() ? nullptr : description_.shaders[0].glsl.cache;
+  built.shaders =
+      std::make_unique<const LinkedShaders>(std::move(programs), bindings_of(modules_), gpu, cache);
+  built.builder = std::make_unique<LaunchBuilder>(*built.shaders, memory_);
+  launches_.push_back(std::move(built));
+}
+
+uint32_t PipelineWorld::number_of(const Built& launch, const std::string& shader) const {
+  const uint32_t module = modules_.index_of(shader);
+  return module == exec::kNoShader ? exec::kNoShader : launch.number[module];
+}
+
+void PipelineWorld::set_size(const Built& launch) {
+  const LaunchDescription& d = launch.description;
+  if (!d.compute.empty()) return launch.builder->set_blocks(number_of(launch, d.compute), d.size, d.where);
   const bool nested =
       traces_from(modules_, isa::Stage::ClosestHit) || traces_from(modules_, isa::Stage::Miss);
   const bool has_callables = !description_.callable.records.empty();
-  builder_.set_rays(description_.launch, description_.max_trace_depth.value_or(nested ? kDefaultDepth : 1),
-                    description_.max_callable_depth.value_or(has_callables ? kDefaultDepth : 0),
-                    SourceLocation{description_.path});
+  launch.builder->set_rays(d.size, d.max_trace_depth.value_or(nested ? kDefaultDepth : 1),
+                           d.max_callable_depth.value_or(has_callables ? kDefaultDepth : 0), d.where);
 }
 
 const BindingUse* PipelineWorld::use_of(const Slot& slot) const {
@@ -142,7 +167,8 @@ void PipelineWorld::upload_buffers() {
     if (!bytes.empty()) memory_.write(buffer_address_[i], bytes.data(), bytes.size());
     bound.add(b.slot, {buffer_address_[i], bytes.size()}, LaunchBuilder::unbound);
   }
-  for (const auto& [place, elements] : bound.all) builder_.bind_buffers(place, elements);
+  for (const Built& launch : launches_)
+    for (const auto& [place, elements] : bound.all) launch.builder->bind_buffers(place, elements);
 }
 
 void PipelineWorld::upload_images() {
@@ -163,13 +189,15 @@ void PipelineWorld::upload_images() {
     images_[i] = picture.view;
     bound.add(d.slot, std::move(picture.view), unbound_image);
   }
-  for (auto& [place, elements] : bound.all) builder_.bind_images(place, std::move(elements));
+  for (const Built& launch : launches_)
+    for (const auto& [place, elements] : bound.all) launch.builder->bind_images(place, elements);
 }
 
 void PipelineWorld::add_samplers() {
   Elements<exec::Sampler> bound;
   for (const SamplerDescription& d : description_.samplers) bound.add(d.slot, d.sampler, unbound_sampler);
-  for (auto& [place, elements] : bound.all) builder_.bind_samplers(place, std::move(elements));
+  for (const Built& launch : launches_)
+    for (const auto& [place, elements] : bound.all) launch.builder->bind_samplers(place, elements);
 }
 
 uint32_t PipelineWorld::build_structures(const GpuParams& gpu) {
@@ -225,26 +253,29 @@ uint32_t PipelineWorld::build_structures(const GpuParams& gpu) {
     structures.top_depth = std::max(structures.top_depth, top.depth);
     bound.add(description.slot, {top.address, top.bytes}, LaunchBuilder::unbound);
   }
-  for (const auto& [place, elements] : bound.all) builder_.bind_buffers(place, elements);
+  for (const Built& launch : launches_)
+    for (const auto& [place, elements] : bound.all) launch.builder->bind_buffers(place, elements);
   return stack_need;
 }
 
-uint32_t PipelineWorld::group_index(const GroupDescription& group, TableInput& input, bool is_hit) {
+uint32_t PipelineWorld::group_index(const Built& launch, const GroupDescription& group, TableInput& input,
+                                    bool is_hit) {
   if (!is_hit && group.general.empty()) return kNoGroup;
   ShaderGroup made;
-  made.general = modules_.index_of(group.general);
-  made.hit = {modules_.index_of(group.closest_hit), modules_.index_of(group.any_hit),
-              modules_.index_of(group.intersection)};
+  made.general = number_of(launch, group.general);
+  made.hit = {number_of(launch, group.closest_hit), number_of(launch, group.any_hit),
+              number_of(launch, group.intersection)};
   input.groups.push_back(made);
   return uint32_t(input.groups.size() - 1);
 }
 
-TableRecord PipelineWorld::record(const RecordDescription& description, TableInput& input, bool is_hit) {
+TableRecord PipelineWorld::record(const Built& launch, const RecordDescription& description,
+                                  TableInput& input, bool is_hit) {
   const GroupDescription* group = &description.inlined;
   for (const GroupDescription& named : description_.groups)
     if (!description.group.empty() && named.name == description.group) group = &named;
   TableRecord out;
-  out.group = group_index(*group, input, is_hit);
+  out.group = group_index(launch, *group, input, is_hit);
   const frontend::BlockType* block = nullptr;
   const ShaderModule* reader = nullptr;
   for (const std::string& name : {group->general, group->closest_hit, group->any_hit, group->intersection}) {
@@ -263,28 +294,31 @@ TableRecord PipelineWorld::record(const RecordDescription& description, TableInp
   return out;
 }
 
-void PipelineWorld::fill_records() {
+void PipelineWorld::fill_records(const Built& launch) {
   TableInput input;
-  input.raygen = record(*description_.raygen, input, false);
+  input.raygen = record(launch, *launch.description.raygen, input, false);
   const auto fill = [&](TableRegion& to, const RegionDescription& from, bool is_hit) {
     to.stride = from.stride;
-    for (const RecordDescription& each : from.records) to.records.push_back(record(each, input, is_hit));
+    for (const RecordDescription& each : from.records)
+      to.records.push_back(record(launch, each, input, is_hit));
   };
   fill(input.miss, description_.miss, false);
   fill(input.hit, description_.hit, true);
   fill(input.callable, description_.callable, false);
   errors_.throw_if_errors();
-  builder_.set_records(input);
+  launch.builder->set_records(input);
 }
 
-void PipelineWorld::set_push_constants() {
+void PipelineWorld::set_push_constants(const Built& launch) {
+  const DataSource& given = launch.description.push_constants;
   const frontend::BlockType* block = nullptr;
   const ShaderModule* reader = nullptr;
   for (const ShaderModule& module : modules_.all())
-    if (!module.reflection.push_constants.members.empty() &&
+    if (number_of(launch, module.name) != exec::kNoShader &&
+        !module.reflection.push_constants.members.empty() &&
         (!block || module.reflection.push_constants.bytes > block->bytes))
       block = &module.reflection.push_constants, reader = &module;
-  if (!description_.push_constants.data) {
+  if (!given.data) {
     if (block)
       errors_.error({description_.path, 0, 0}, "[push_constants] is missing",
                     fmt::format("the shader declares {} bytes of them at {}", block->bytes,
@@ -292,14 +326,14 @@ void PipelineWorld::set_push_constants() {
     return;
   }
   const std::vector<std::byte> bytes = bytes_of(
-      description_.push_constants, block, [&](const std::string& name) { return address_of(name); }, errors_);
+      given, block, [&](const std::string& name) { return address_of(name); }, errors_);
   if (block && bytes.size() < block->bytes)
     errors_.error(
-        description_.push_constants.where,
+        given.where,
         fmt::format("the push constants have {} bytes, and the shader's have {}", bytes.size(), block->bytes),
         fmt::format("the shader declares them at {}", reader->where_declared("push_constant").to_string()));
   else
-    builder_.set_push_constants(bytes, 0, description_.push_constants.where);
+    launch.builder->set_push_constants(bytes, 0, given.where);
 }
 
 std::span<const std::byte> PipelineWorld::buffer(size_t index) const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,7 +17,8 @@
 
 namespace glint::pipeline {
 
-// Holds memory and world of one launch. It cannot be moved, because the world points into it.
+// Holds the memory of a pipeline file and the worlds of its launches. They keep what they write there for
+// each other. It cannot be moved, because the worlds point into it.
 class PipelineWorld {
  public:
   // Throws UserError that lists what is wrong with the description, or UnsupportedError for what a shader
@@ -25,8 +27,9 @@ class PipelineWorld {
   PipelineWorld(const PipelineWorld&) = delete;
   PipelineWorld& operator=(const PipelineWorld&) = delete;
 
-  exec::World& world() { return builder_.world; }
-  const exec::World& world() const { return builder_.world; }
+  size_t num_launches() const { return launches_.size(); }
+  exec::World& world(size_t launch = 0) { return launches_[launch].builder->world; }
+  const exec::World& world(size_t launch = 0) const { return launches_[launch].builder->world; }
   StructureCounts structures;
   std::vector<std::string> warnings;
   const Modules& modules() const { return modules_; }
@@ -38,30 +41,41 @@ class PipelineWorld {
   const exec::ImageView& image(size_t index) const { return images_[index]; }
 
  private:
-  void set_launch();
+  // Holds a launch with the shaders that it uses. The other shaders of the file take no registers from it.
+  struct Built {
+    const LaunchDescription& description;
+    std::vector<uint32_t> number;  // its number of each module, or exec::kNoShader
+    std::unique_ptr<const LinkedShaders> shaders;
+    std::unique_ptr<LaunchBuilder> builder;
+  };
+  void link(const LaunchDescription& launch, const GpuParams& gpu);
+  bool uses(const LaunchDescription& launch, const ShaderModule& module) const;
+  uint32_t number_of(const Built& launch, const std::string& shader) const;
+  void set_size(const Built& launch);
   void upload_buffers();
   void upload_images();
   void add_samplers();
   uint32_t build_structures(const GpuParams& gpu);
-  void fill_records();
-  void set_push_constants();
+  void fill_records(const Built& launch);
+  void set_push_constants(const Built& launch);
   const BindingUse* use_of(const Slot& slot) const;
-  TableRecord record(const RecordDescription& description, TableInput& input, bool is_hit);
-  uint32_t group_index(const GroupDescription& group, TableInput& input, bool is_hit);
+  TableRecord record(const Built& launch, const RecordDescription& description, TableInput& input,
+                     bool is_hit);
+  uint32_t group_index(const Built& launch, const GroupDescription& group, TableInput& input, bool is_hit);
   uint64_t address_of(const std::string& buffer) const;
 
   const PipelineDescription description_;
   const Modules modules_;
   mem::AddressSpace memory_;
-  const LinkedShaders shaders_;
-  LaunchBuilder builder_;
+  std::vector<Built> launches_;
   std::vector<Address> buffer_address_;
   std::vector<uint64_t> buffer_bytes_;
   std::vector<exec::ImageView> images_;
   Diagnostics errors_;
 };
 
-// Runs the pipeline. The result has counts, statistics and time, but no picture. Throws as render() does.
+// Runs a pipeline of one launch. The result has counts, statistics and time, but no picture. Throws as
+// render() does.
 RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
                           uint32_t threads, const LaunchWatch& watch, const Observation& observe = {});
 

@@ -63,8 +63,10 @@ class Check {
         warnings_.push_back(fmt::format("{}: note: no shader has set {} binding {}, so nobody uses '{}'",
                                         g.where.to_string(), g.slot->set.value_or(0), *g.slot->binding,
                                         g.name));
-    check_stage(d_.compute, isa::Stage::Compute, d_.compute_where, "[compute]");
-    if (d_.raygen) check_record(*d_.raygen, isa::Stage::RayGeneration, "[raygen]");
+    for (const LaunchDescription& launch : d_.launches) {
+      check_stage(launch.compute, isa::Stage::Compute, launch.where, "[compute]");
+      if (launch.raygen) check_record(*launch.raygen, isa::Stage::RayGeneration, "[raygen]");
+    }
     for (const auto& record : d_.miss.records) check_record(record, isa::Stage::Miss, "a miss record");
     for (const auto& record : d_.callable.records)
       check_record(record, isa::Stage::Callable, "a callable record");

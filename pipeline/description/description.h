@@ -135,24 +135,31 @@ struct MachineDescription {
   uint64_t max_instructions = 0;
 };
 
+// Describes one launch of a file: what runs, how often, and what the caches hold when it begins.
+struct LaunchDescription {
+  std::string name;                         // names its results; empty: the file has one launch, [launch]
+  std::optional<RecordDescription> raygen;  // a launch has either this or a compute shader
+  std::string compute;
+  std::array<uint32_t, 3> size{0, 0, 0};  // rays, or blocks of the compute shader; zeros: not given
+  std::optional<uint32_t> max_trace_depth, max_callable_depth;
+  DataSource push_constants;
+  bool warm = false;  // It begins with what the launch before it has left in the L2.
+  SourceLocation where;
+};
+
 struct PipelineDescription {
   std::string path;  // path of the file
   std::string name;  // name for the run directory and messages
   std::vector<ShaderFile> shaders;
   std::vector<GroupDescription> groups;
-  std::optional<RecordDescription> raygen;
-  std::string compute;  // a shader; a pipeline has either this or raygen
-  SourceLocation compute_where;
+  std::vector<LaunchDescription> launches;  // in order; at least one
   RegionDescription miss, hit, callable;
   std::vector<BufferDescription> buffers;
   std::vector<ImageDescription> images;
   std::vector<SamplerDescription> samplers;
   std::vector<BottomLevelDescription> bottom_levels;
   std::vector<TopLevelDescription> top_levels;
-  DataSource push_constants;
-  Value specialization;                     // a table of constants by name or number
-  std::array<uint32_t, 3> launch{0, 0, 0};  // rays, or blocks of a compute shader; zeros: not given
-  std::optional<uint32_t> max_trace_depth, max_callable_depth;
+  Value specialization;  // a table of constants by name or number
   MachineDescription machine;
 };
 

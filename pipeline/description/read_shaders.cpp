@@ -1,4 +1,4 @@
-// Reads shaders, groups, records, constants, launch and machine.
+// Reads shaders, groups, records and constants.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
@@ -13,6 +13,13 @@ namespace glint::pipeline {
 
 std::string Reading::beside(const std::string& file) const {
   return file.empty() ? file : (std::filesystem::path(out.path).parent_path() / file).string();
+}
+
+void add_shader_file(Reading& r, const std::string& name, const SourceLocation& where) {
+  if (name.empty()) return;
+  for (const ShaderFile& shader : r.out.shaders)
+    if (shader.name == name) return;
+  r.out.shaders.push_back({name, r.beside(name), "", r.glsl, where});
 }
 
 namespace {
@@ -44,18 +51,9 @@ frontend::GlslOptions read_glsl(Reading& r, TableReader& t, frontend::GlslOption
   return glsl;
 }
 
-// Adds a shader file that only a record names, without any [[shader]].
-void add_file(Reading& r, const std::string& name, const SourceLocation& where,
-              const frontend::GlslOptions& glsl) {
-  if (name.empty()) return;
-  for (const ShaderFile& shader : r.out.shaders)
-    if (shader.name == name) return;
-  r.out.shaders.push_back({name, r.beside(name), "", glsl, where});
-}
-
-void add_group(Reading& r, const GroupDescription& group, const frontend::GlslOptions& glsl) {
+void add_group(Reading& r, const GroupDescription& group) {
   for (const std::string& name : {group.general, group.closest_hit, group.any_hit, group.intersection})
-    add_file(r, name, group.where, glsl);
+    add_shader_file(r, name, group.where);
 }
 
 enum class Region { Raygen, Hit, General };
@@ -72,8 +70,7 @@ GroupDescription read_group(TableReader& t, Region region) {
   return group;
 }
 
-RecordDescription read_record(Reading& r, const Value& value, Region region, const std::string& what,
-                              const frontend::GlslOptions& glsl) {
+RecordDescription read_record(Reading& r, const Value& value, Region region, const std::string& what) {
   TableReader t(value, what, r.errors);
   RecordDescription record;
   record.where = value.where;
@@ -81,7 +78,7 @@ RecordDescription read_record(Reading& r, const Value& value, Region region, con
   record.inlined = read_group(t, region);
   record.data = read_data(r, t, false);
   t.finish();
-  add_group(r, record.inlined, glsl);
+  add_group(r, record.inlined);
   if (!record.group.empty() && record.inlined.general + record.inlined.closest_hit + record.inlined.any_hit +
                                        record.inlined.intersection !=
                                    "")
@@ -90,9 +87,9 @@ RecordDescription read_record(Reading& r, const Value& value, Region region, con
 }
 
 void read_region(Reading& r, TableReader& root, RegionDescription& region, const std::string& key,
-                 Region kind, const frontend::GlslOptions& glsl) {
+                 Region kind) {
   for (const Value* each : root.tables(key))
-    region.records.push_back(read_record(r, *each, kind, fmt::format("a record of '{}'", key), glsl));
+    region.records.push_back(read_record(r, *each, kind, fmt::format("a record of '{}'", key)));
 }
 
 void read_strides(Reading& r, TableReader& root) {
@@ -109,16 +106,15 @@ void read_strides(Reading& r, TableReader& root) {
 }  // namespace
 
 void read_shaders(Reading& r, TableReader& root) {
-  frontend::GlslOptions glsl;
   for (const Value* each : root.tables("compile")) {
     TableReader t(*each, "[compile]", r.errors);
-    glsl = read_glsl(r, t, glsl);
+    r.glsl = read_glsl(r, t, r.glsl);
     t.finish();
   }
   for (const Value* each : root.tables("shader")) {
     TableReader t(*each, "a shader", r.errors);
     const std::string file = t.required_text("file");
-    ShaderFile shader{t.text("name", file), r.beside(file), t.text("entry"), read_glsl(r, t, glsl),
+    ShaderFile shader{t.text("name", file), r.beside(file), t.text("entry"), read_glsl(r, t, r.glsl),
                       each->where};
     t.finish();
     for (const ShaderFile& other : r.out.shaders)
@@ -133,54 +129,17 @@ void read_shaders(Reading& r, TableReader& root) {
     group.general = t.text("shader");
     group.name = t.required_text("name");
     t.finish();
-    add_group(r, group, glsl);
+    add_group(r, group);
     r.out.groups.push_back(std::move(group));
   }
-  if (const Value* raygen = root.take("raygen"))
-    r.out.raygen = read_record(r, *raygen, Region::Raygen, "[raygen]", glsl);
-  if (const Value* compute = root.take("compute")) {
-    TableReader t(*compute, "[compute]", r.errors);
-    r.out.compute = t.required_text("shader");
-    r.out.compute_where = compute->where;
-    t.finish();
-    add_file(r, r.out.compute, compute->where, glsl);
-  }
-  read_region(r, root, r.out.miss, "miss", Region::General, glsl);
-  read_region(r, root, r.out.hit, "hit", Region::Hit, glsl);
-  read_region(r, root, r.out.callable, "callable", Region::General, glsl);
+  read_region(r, root, r.out.miss, "miss", Region::General);
+  read_region(r, root, r.out.hit, "hit", Region::Hit);
+  read_region(r, root, r.out.callable, "callable", Region::General);
   read_strides(r, root);
 }
 
-void read_launch(Reading& r, TableReader& root) {
-  const Value* launch = root.take("launch");
-  if (launch) {
-    TableReader t(*launch, "[launch]", r.errors);
-    const bool is_compute = !r.out.compute.empty();
-    const char* key = is_compute ? "groups" : "size";
-    if (const Value* other = t.take(is_compute ? "size" : "groups"))
-      r.errors.error(other->where, is_compute ? "a compute shader is launched in 'groups' of its local size"
-                                              : "rays are launched by 'size'");
-    const std::vector<uint32_t> size = t.sizes(key, 3);
-    if (!size.empty()) r.out.launch = {1, 1, 1};
-    std::copy(size.begin(), size.end(), r.out.launch.begin());
-    if (const auto depth = t.optional_integer("max_trace_depth", 0, 31))
-      r.out.max_trace_depth = uint32_t(*depth);
-    if (const auto depth = t.optional_integer("max_callable_depth", 0, 31))
-      r.out.max_callable_depth = uint32_t(*depth);
-    t.finish();
-  }
-  if (r.out.launch[0] == 0)
-    r.errors.error(launch ? launch->where : SourceLocation{r.out.path, 0, 0},
-                   r.out.compute.empty() ? "[launch] needs 'size', the numbers of rays in x, y and z"
-                                         : "[launch] needs 'groups', the numbers of blocks in x, y and z");
-  for (const Value* each : root.tables("machine")) {
-    TableReader t(*each, "[machine]", r.errors);
-    if (t.take("mode")) r.out.machine.mode = t.name("mode", "timing", {"timing", "functional"});
-    r.out.machine.config = t.text("config");
-    r.out.machine.settings = t.texts("set");
-    r.out.machine.max_instructions = uint64_t(t.integer("max_instructions", 0, 1, INT64_MAX));
-    t.finish();
-  }
+RecordDescription read_raygen(Reading& r, const Value& value) {
+  return read_record(r, value, Region::Raygen, "[raygen]");
 }
 
 PipelineDescription read_root(const Value& root, const std::string& path) {
@@ -192,21 +151,10 @@ PipelineDescription read_root(const Value& root, const std::string& path) {
   TableReader t(root, "a pipeline", errors);
   out.name = t.text("name", out.name);
   read_shaders(r, t);
-  read_launch(r, t);
+  read_launches(r, t);
   read_resources(r, t);
-  if (const Value* push = t.take("push_constants")) {
-    out.push_constants.where = push->where;
-    const Value* data = push->find("data");
-    out.push_constants.data = data ? *data : *push;
-  }
   if (const Value* constants = t.take("specialization")) out.specialization = *constants;
   t.finish();
-  if (out.raygen.has_value() == !out.compute.empty())
-    errors.error({path, 0, 0}, out.raygen ? "a pipeline has [raygen] or [compute], not both"
-                                          : "a pipeline needs [raygen] or [compute]");
-  if (out.compute.empty() == false &&
-      !(out.miss.records.empty() && out.hit.records.empty() && out.callable.records.empty()))
-    errors.error(out.compute_where, "a compute pipeline has no records of miss, hit or callable shaders");
   errors.throw_if_errors();
   return out;
 }

@@ -88,6 +88,8 @@ std::vector<std::string> saved_before(const std::string& path) {
   return listed_names(path, "saved", [](const nlohmann::json& item) { return item; });
 }
 
+constexpr const char* kLaunchPrefix = "launch-";
+
 // Returns the names of the maps in a maps.json.
 std::vector<std::string> maps_before(const std::string& path) {
   return listed_names(path, "maps", [](const nlohmann::json& item) {
@@ -125,6 +127,17 @@ void write_file(const std::string& path, const std::string& bytes) {
   fail(why);
 }
 
+std::string launch_folder(size_t number, const std::string& name) {
+  return fmt::format("{}{}-{}", kLaunchPrefix, number, name);
+}
+
+std::vector<std::string> launches_of(const std::string& directory) {
+  std::vector<std::string> out =
+      listed_names(directory + "/run.json", "launches", [](const nlohmann::json& item) { return item; });
+  std::erase_if(out, [](const std::string& name) { return !name.starts_with(kLaunchPrefix); });
+  return out;
+}
+
 RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
   std::error_code error;
   fs::create_directories(path_, error);
@@ -159,11 +172,24 @@ void RunDirectory::begin(RunInfo info) {
   // A killed run leaves this list, from which the next run knows what to remove.
   for (const std::string& name : saved_before(path_of("run.json")))
     if (std::ranges::find(info.saved, name) == info.saved.end()) info.saved.push_back(name);
+  const std::vector<std::string> launches = launches_of(path_);
   mark(info);
   remove_results();
+  for (const std::string& name : launches) remove_launch(name);
   remove_temporaries(path_, [&](const std::string& name) {
     return name == "run.json" || name == "config.toml" || std::ranges::find(earlier, name) != earlier.end();
   });
+}
+
+// Removes the directory of a launch, unless it holds files of others.
+void RunDirectory::remove_launch(const std::string& name) const {
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(path_of(name), error))) return;
+  const RunDirectory launch(path_of(name));
+  launch.remove_results();
+  launch.remove("config.toml");
+  launch.remove("run.json");
+  fs::remove(launch.path(), error);
 }
 
 void RunDirectory::remove(const std::string& name) const {
@@ -274,6 +300,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
     json["not_finite"][file] = {{"pixels", found.pixels}, {"x", found.x}, {"y", found.y}};
     if (!found.stored_at.empty()) json["not_finite"][file]["stored_at"] = found.stored_at;
   }
+  if (!info.launches.empty()) json["launches"] = info.launches;
   if (!info.saved.empty()) json["saved"] = info.saved;
   for (const OutputInfo& output : info.outputs)
     json["outputs"][output.file] = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};

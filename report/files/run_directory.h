@@ -73,13 +73,19 @@ struct RunInfo {
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
   std::vector<std::pair<std::string, NotFinite>> not_finite;  // pictures with pixels that are not finite
-  std::vector<std::string> saved;   // files that a pipeline or a kernel was asked to keep
-  std::vector<OutputInfo> outputs;  // what these files hold
-  bool compact = false;             // The statistics are totals over units (stat_totals()).
+  std::vector<std::string> saved;     // files that a pipeline or a kernel was asked to keep
+  std::vector<OutputInfo> outputs;    // what these files hold
+  std::vector<std::string> launches;  // folders of a list of launches, in order; each is a run directory
+  bool compact = false;               // The statistics are totals over units (stat_totals()).
   std::optional<PartInfo> part;
   int exit = 0;
   std::string message;  // why exit is not 0
 };
+
+// Returns the name of the folder of launch `number` of a list: "launch-0-trace".
+std::string launch_folder(size_t number, const std::string& name);
+// Returns the folders of the launches that a run's run.json lists, in order; none when it is of one launch.
+std::vector<std::string> launches_of(const std::string& directory);
 
 // Writes a file under another name and renames it, so that a reader never sees half a file. When the file
 // cannot be written, nothing stays behind, and UserError is thrown. Anything but a regular file (a pipe, a
@@ -119,6 +125,7 @@ class RunDirectory {
   const FileList& written() const { return written_; }  // what this object has written and not removed
 
  private:
+  void remove_launch(const std::string& name) const;
   std::vector<std::string> own_files() const;  // results that a run may have left beside the folder heat
 
   std::string path_;

@@ -70,19 +70,34 @@ std::string failed_table(const Json& one) {
       rows);
 }
 
+// Says how a kind of collection is shown.
+struct Kind {
+  const char *id, *title;
+  const char* lead;  // its arguments are the points, all of them with those that failed, and the folder
+};
+Kind kind_of(const Json& one) {
+  if (one["kind"] == "sweep")
+    return {"sweep", "Sweep",
+            "{} of {} points of <code>{}</code> are complete. Each name leads to the point's own report."};
+  if (one["kind"] == "launches")
+    return {
+        "launches", "Launches",
+        "{} of {} launches of <code>{}</code> are complete, in the order in which they ran. The run's own "
+        "numbers are their sum. Each name leads to the launch's own report."};
+  return {"failed", "Workloads that failed", ""};
+}
+
 std::string section(const Json& data, const Json& one, size_t number) {
-  const bool is_sweep = one["kind"] == "sweep";
+  const Kind kind = kind_of(one);
+  const bool has_table = *kind.lead != 0;
   const size_t failed = one["failed"].size(), points = one["points"].size();
-  if (!is_sweep && failed == 0) return "";
-  std::string out =
-      fmt::format("<section id=\"{}{}\">\n<h2>{}</h2>\n", is_sweep ? "sweep" : "failed",
-                  number ? fmt::format("-{}", number + 1) : "", is_sweep ? "Sweep" : "Workloads that failed");
-  if (is_sweep)
-    out += fmt::format(
-               "<p class=\"lead\">{} of {} points of <code>{}</code> are complete. Each name leads to the "
-               "point's own report.</p>\n",
-               points, points + failed, escaped_text(one, "source")) +
-           points_table(data, one);
+  if (!has_table && failed == 0) return "";
+  std::string out = fmt::format("<section id=\"{}{}\">\n<h2>{}</h2>\n", kind.id,
+                                number ? fmt::format("-{}", number + 1) : "", kind.title);
+  if (has_table)
+    out += "<p class=\"lead\">" +
+           fmt::format(fmt::runtime(kind.lead), points, points + failed, escaped_text(one, "source")) +
+           "</p>\n" + points_table(data, one);
   else
     out += fmt::format(
         "<p class=\"lead\"><code>{}</code> has {} not in its metrics.csv, and so not on this page.</p>\n",

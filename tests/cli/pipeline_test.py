@@ -10,7 +10,8 @@ import subprocess
 import glint_case
 from glint_case import ROOT, GlintTest, read_png
 
-PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion", "reordering"]
+PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion", "reordering", "denoise"]
+LISTS = ["denoise"]  # examples with several launches, whose file `glint init` does not write
 
 
 def npy(path):
@@ -79,6 +80,66 @@ class Examples(PipelineTest):
         run = json.loads((self.folder / "out/run.json").read_text())
         self.assertEqual(run["exit"], 0)
         self.assertIn("(128, 128, 4)", npy(self.folder / "out/picture.npy")[0])
+
+
+class Lists(PipelineTest):
+    LIST = (ROOT / "examples/denoise/pipeline.toml")
+
+    def cycles(self, folder):
+        row = next(r for r in (self.folder / folder / "stats.csv").read_text().splitlines() if r.startswith("gpu.cycles,"))
+        return int(row.split(",")[1])
+
+    def test_launches_have_run_directories_and_the_run_has_their_sum(self):
+        done = self.glint("run", self.LIST, "--out", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        launches = json.loads((self.folder / "out/run.json").read_text())["launches"]
+        self.assertEqual(launches, ["launch-0-trace", "launch-1-denoise"])
+        parts = [self.cycles(f"out/{name}") for name in launches]
+        self.assertEqual(self.cycles("out"), sum(parts))
+        shaders = [json.loads((self.folder / "out" / name / "run.json").read_text())["shader"] for name in launches]
+        self.assertEqual(shaders, ["trace.rgen", "denoise.comp"])
+        done = self.glint("report", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / "out/report.html").read_text()
+        for name in launches:
+            self.assertIn(f'<a href="{name}/report.html">{name}</a>', page)
+
+    def test_warm_caches_save_cycles_of_the_second_launch_and_change_nothing_else(self):
+        self.copy("denoise")
+        cold = self.edit(('caches = "warm"\n', ""))
+        for file, out in ((self.folder / "pipeline.toml", "warm"), (cold, "cold")):
+            done = self.glint("run", file, "--out", out)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.cycles("warm/launch-0-trace"), self.cycles("cold/launch-0-trace"))
+        self.assertLess(self.cycles("warm/launch-1-denoise"), self.cycles("cold/launch-1-denoise"))
+        self.assertEqual((self.folder / "warm/picture.png").read_bytes(), (self.folder / "cold/picture.png").read_bytes())
+
+    def test_launches_of_an_earlier_run_are_removed(self):
+        self.copy("denoise")
+        self.run_file(self.folder / "pipeline.toml")
+        self.run_file(self.edit(('name = "trace"', 'name = "rays"')))
+        self.assertFalse((self.folder / "out/launch-0-trace").exists())
+        self.assertTrue((self.folder / "out/launch-0-rays/run.json").is_file())
+
+    def test_a_launch_that_is_cut_ends_the_list(self):
+        done = self.glint("run", self.LIST, "--out", "out", "--max-cycles", "6000")
+        self.assertEqual(done.returncode, 6, done.stderr)
+        for name in ("out", "out/launch-0-trace"):
+            self.assertEqual(json.loads((self.folder / name / "run.json").read_text())["partial"]["cycles"], 6027)
+        self.assertFalse((self.folder / "out/launch-1-denoise").exists())
+
+    def test_mistakes_of_lists_name_their_lines(self):
+        self.copy("denoise")
+        for old, new, message in (('name = "denoise"', 'name = "trace"', "there are two launches 'trace'"),
+                                  ('raygen = "trace.rgen"\n', "", "a launch needs 'raygen' or 'compute', a shader"),
+                                  ('compute = "denoise.comp"', 'compute = "denoise.comp"\nraygen = "trace.rgen"', "a launch has 'raygen' or 'compute', not both"),
+                                  ('name = "trace"', 'name = "../trace"', "so it has no slash"),
+                                  ("groups = [16, 32]", "size = [16, 32]", "a compute shader is launched in 'groups'")):
+            with self.subTest(message=message):
+                done = self.glint("run", self.edit((old, new)), "--mode", "functional", "--out", "out")
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertRegex(done.stderr, r"edited\.toml:\d+:\d+: error: ")
+                self.assertIn(message, done.stderr)
 
 
 ADD = """#version 460
@@ -223,7 +284,7 @@ void main() { words[gl_LocalInvocationIndex % 2u] = imageAtomicAdd(counts, ivec2
         self.assertRegex(self.run_file("count.comp").stdout, r"(?i)words.* 9 9 0")
 
     def test_init_writes_a_file_that_runs_as_it_is(self):
-        for name in (*PICTURES, "reduction"):
+        for name in {*PICTURES, "reduction"} - {*LISTS}:
             with self.subTest(example=name):
                 shaders = shaders_of(name)
                 done = self.glint("init", f"{name}.toml", *shaders)
@@ -247,7 +308,7 @@ void main() {
         head = "#version 460\n#extension GL_EXT_ray_tracing : require\nlayout(location = 0) rayPayloadInEXT vec3 color;\n"
         self.write("cam.rmiss", head + "void main() { color = vec3(0.0); }\n")
         self.write("cam.rchit", head + "void main() { color = vec3(gl_PrimitiveID < 2 ? 0.3 : 1.0); }\n")  # the floor, the pyramid
-        projects = {name: shaders_of(name) for name in PICTURES}
+        projects = {name: shaders_of(name) for name in PICTURES if name not in LISTS}
         for name, shaders in {**projects, "cam": [f"cam.{stage}" for stage in ("rgen", "rmiss", "rchit")]}.items():
             with self.subTest(project=name):
                 self.assertEqual(self.glint("init", f"{name}.toml", *shaders).returncode, 0)

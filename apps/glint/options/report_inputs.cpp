@@ -11,6 +11,7 @@
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
 #include "report/analytical/model_table.h"
+#include "report/files/run_directory.h"
 #include "report/files/run_record.h"
 #include "report/page/lab.h"
 #include "report/page/suite.h"
@@ -85,6 +86,21 @@ void add_sweep(const std::string& folder, ReportInputs& out) {
   out.collections.push_back(std::move(one));
 }
 
+// Adds the launches of a run that has a list of them, after the run itself, which has their sum.
+void add_launches(const std::string& folder, ReportInputs& out) {
+  nlohmann::ordered_json one = collection("launches", folder);
+  for (const std::string& name : report::launches_of(folder)) {
+    const fs::path launch = fs::path(folder) / name;
+    if (const std::string reason = why_incomplete(launch); !reason.empty()) {
+      one["failed"].push_back(failure(launch, reason));
+      continue;
+    }
+    out.runs.push_back(launch.string());
+    one["points"].push_back({{"name", name}, {"directory", launch.string()}});
+  }
+  if (!one["points"].empty()) out.collections.push_back(std::move(one));
+}
+
 void add_bench(const std::string& name, ReportInputs& out) {
   const fs::path folder(name);
   const std::vector<std::string> runs = bench_runs(name);
@@ -129,6 +145,7 @@ void add_named(const std::string& name, ReportInputs& out) {
   if (!is_run && fs::exists(path / "metrics.csv")) return add_bench(name, out);
   if (!is_run && fs::exists(path / "sweep.json")) return add_sweep(name, out);
   if (is_run || !has_models) out.runs.push_back(name);
+  if (is_run) add_launches(name, out);
   if (has_models) add_models((path / "models.csv").string(), name, name, out);
 }
 

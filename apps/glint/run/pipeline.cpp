@@ -11,6 +11,7 @@
 
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/launch_list.h"
 #include "apps/glint/run/outputs.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pipeline/description/defaults.h"
@@ -117,6 +118,7 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   };
   add(world.description().images, true);
   add(world.description().buffers, false);
+  info.launches = launch_folders(world.description());
   info.frame[0].second = world.world().launch_size[0];
   info.frame[1].second = world.world().launch_size[1];
   return info;
@@ -154,23 +156,27 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   job.no_skip = options.no_skip;
   pipeline::PipelineWorld world(description, job.gpu);
   exec::PrintLog prints(options.print_limit);
-  world.world().prints = &prints;
-  world.world().on_fault = options.on_fault;
+  for (size_t i = 0; i < world.num_launches(); ++i)
+    world.world(i).prints = &prints, world.world(i).on_fault = options.on_fault;
   for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
 
   const auto& [x, y, z] = world.world().launch_size;
-  const std::string title = fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
-                                        description.compute.empty() ? "rays" : "threads", mode, config);
+  const bool is_list = !description.launches[0].name.empty();
+  const std::string title =
+      is_list ? fmt::format("{}  {} launches, {} on {}", description.name, world.num_launches(), mode, config)
+              : fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
+                            description.launches[0].compute.empty() ? "rays" : "threads", mode, config);
   report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
                                                      : options.out);
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   info.on_fault = exec::name_of(options.on_fault);
   info.compact = options.compact();
   begin_directory(directory, info, job.gpu, title);
-  std::vector<std::string> files;
+  std::vector<std::string> files, launches;
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
+        if (is_list) return run_launches({session, options, job, world, directory}, info, watch, launches);
         return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, watch,
                                       options.observe);
       },
@@ -178,6 +184,8 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
         directory.write_stats(ended.statistics(), options.compact());
         files = keep(world, directory, ended, info);
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
+        files.insert(files.begin(), launches.begin(), launches.end());
+        if (is_list) return;  // Each launch has kept its own.
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
       },

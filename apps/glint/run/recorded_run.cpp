@@ -88,26 +88,10 @@ void begin_directory(report::RunDirectory& directory, const report::RunInfo& inf
   directory.write_config(describe_params(gpu), "Resolved configuration of: " + title, info.compact);
 }
 
-pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
-                                    const report::RunDirectory& directory, report::RunInfo& info,
-                                    const RunLaunch& run,
-                                    const std::function<void(const pipeline::RenderResult&)>& keep,
-                                    exec::PrintLog* prints) {
-  report::Progress progress(session.on_terminal ? stdout : nullptr, info.scene, session.terminal);
-  ProgressPipe pipe(session.progress_descriptor, "rendering");
-  // Before the launch begins, signals end the process at once.
-  std::optional<StopSignals> signals;
-  pipeline::LaunchWatch watch;
-  watch.progress = [&](const pipeline::LaunchProgress& at, const std::function<std::string()>& line) {
-    progress.update(at.ended_warps, at.num_warps, {at.cycles, at.instructions},
-                    [&] { return std::filesystem::path(line()).filename().string(); });
-    pipe.update(at.ended_warps, at.num_warps);
-  };
-  watch.stop = [&] {
-    if (!signals) signals.emplace();
-    return signals->taken() != 0;
-  };
-  watch.max_cycles = max_cycles;
+pipeline::RenderResult record_launch(const report::RunDirectory& directory, report::RunInfo& info,
+                                     const std::function<pipeline::RenderResult()>& launch,
+                                     const std::function<void(const pipeline::RenderResult&)>& keep,
+                                     exec::PrintLog* prints) {
   const auto start = std::chrono::steady_clock::now();
   const auto stop_watch = [&] {
     info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -125,12 +109,10 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
     }
   };
   try {
-    pipeline::RenderResult result = run(watch);
+    pipeline::RenderResult result = launch();
     stop_watch();
-    const int signal = signals ? signals->taken() : 0;
-    signals.reset();
     add_result(result, info);
-    if (result.end != pipeline::LaunchEnd::Whole) add_part(result, signal, info);
+    if (result.end != pipeline::LaunchEnd::Whole) add_part(result, StopSignals::taken(), info);
     keep_prints(prints ? prints->take() : "", directory);
     keep(result);
     directory.write_run(info);
@@ -142,6 +124,34 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
     fail(Exit::Failure, "out of memory");
     throw;
   }
+}
+
+pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
+                                    const report::RunDirectory& directory, report::RunInfo& info,
+                                    const RunLaunch& run,
+                                    const std::function<void(const pipeline::RenderResult&)>& keep,
+                                    exec::PrintLog* prints) {
+  report::Progress progress(session.on_terminal ? stdout : nullptr, info.scene, session.terminal);
+  ProgressPipe pipe(session.progress_descriptor, "rendering");
+  // Before the launch begins, and when it has ended, signals end the process at once.
+  std::optional<StopSignals> signals;
+  pipeline::LaunchWatch watch;
+  watch.progress = [&](const pipeline::LaunchProgress& at, const std::function<std::string()>& line) {
+    progress.update(at.ended_warps, at.num_warps, {at.cycles, at.instructions},
+                    [&] { return std::filesystem::path(line()).filename().string(); });
+    pipe.update(at.ended_warps, at.num_warps);
+  };
+  watch.stop = [&] {
+    if (!signals) signals.emplace();
+    return StopSignals::taken() != 0;
+  };
+  watch.max_cycles = max_cycles;
+  const auto launch = [&] {
+    pipeline::RenderResult result = run(watch);
+    signals.reset();
+    return result;
+  };
+  return record_launch(directory, info, launch, keep, prints);
 }
 
 void note_not_finite(const std::string& file, const pictures::ImageView& image, const exec::ImageView& view,

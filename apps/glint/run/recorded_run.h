@@ -32,6 +32,13 @@ pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,
                                     const std::function<void(const pipeline::RenderResult&)>& keep,
                                     exec::PrintLog* prints = nullptr);
 
+// Does the same for one launch of a list inside of `run`: calls `launch`, adds to `info` how it ended, then
+// calls `keep` and writes run.json.
+pipeline::RenderResult record_launch(const report::RunDirectory& directory, report::RunInfo& info,
+                                     const std::function<pipeline::RenderResult()>& launch,
+                                     const std::function<void(const pipeline::RenderResult&)>& keep,
+                                     exec::PrintLog* prints = nullptr);
+
 // Exit code of a run that --max-cycles has ended. Signals have the codes that shells give them.
 inline constexpr Exit kReachedMaxCycles = Exit(6);
 

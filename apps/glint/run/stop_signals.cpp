@@ -32,7 +32,7 @@ StopSignals::~StopSignals() {
   ::sigaction(SIGTERM, &before_terminate_, nullptr);
 }
 
-int StopSignals::taken() const {
+int StopSignals::taken() {
   return taken_signal.load(std::memory_order_relaxed);
 }
 

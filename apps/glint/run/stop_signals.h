@@ -14,7 +14,7 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  int taken() const;  // number of the signal, or 0
+  static int taken();  // number of the signal that the last of these objects has taken, or 0
 
  private:
   struct sigaction before_interrupt_ {
