@@ -20,6 +20,15 @@ def need(program, package):
         sys.exit(SKIPPED)
 
 
+def need_module(name):
+    """Returns the folder of a module of npm, or ends the test as skipped and says so."""
+    folder = os.environ.get("GLINT_NODE_MODULES", "")
+    if not folder or not pathlib.Path(folder, name).is_dir():
+        print(f"SKIPPED: GLINT_NODE_MODULES names no folder with {name} (npm install --force {name})")
+        sys.exit(SKIPPED)
+    return pathlib.Path(folder, name).resolve()
+
+
 class VulkanTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
