@@ -11,6 +11,7 @@ namespace glint::vulkan {
 namespace {
 
 constexpr VkDeviceSize kAlignment = mem::AddressSpace::kWindowAlignment;
+constexpr size_t kManyParts = 1024;  // The address space has 65,536 places for buffers, images and parts.
 
 VkMemoryRequirements requirements_of(VkDeviceSize bytes) {
   return {(bytes + kAlignment - 1) / kAlignment * kAlignment, kAlignment, kAllMemoryTypes};
@@ -25,6 +26,27 @@ void answer(VkMemoryRequirements2* out, VkDeviceSize bytes) {
 
 }  // namespace
 
+Address BufferParts::open(mem::AddressSpace& memory, const Buffer& buffer, VkDeviceSize offset,
+                          VkDeviceSize bytes) {
+  const auto [found, is_new] = windows_.try_emplace(Part{buffer.number, offset, bytes}, 0);
+  if (is_new)
+    found->second = memory.open_window(fmt::format("{}, bytes {} to {}", buffer.name, offset, offset + bytes),
+                                       buffer.memory->backing, buffer.offset + offset, bytes);
+  return found->second;
+}
+
+void BufferParts::forget(mem::AddressSpace& memory, const Buffer& buffer) {
+  auto at = windows_.lower_bound(Part{buffer.number, 0, 0});
+  for (; at != windows_.end() && at->first.buffer == buffer.number; at = windows_.erase(at))
+    memory.free(at->second);
+}
+
+void BufferParts::trim(mem::AddressSpace& memory) {
+  if (windows_.size() < kManyParts) return;
+  for (const auto& [part, address] : windows_) memory.free(address);
+  windows_.clear();
+}
+
 HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range) {
   if (!buffer->address) throw Refusal(fmt::format("{} is not bound to memory", buffer->name));
   if (offset > buffer->bytes || (range != VK_WHOLE_SIZE && range > buffer->bytes - offset))
@@ -37,12 +59,7 @@ HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, V
 Address address_of_part(Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize bytes) {
   bytes_of(device, buffer, offset, bytes);
   if (offset + bytes == buffer->bytes) return buffer->address + offset;
-  const auto [found, is_new] = buffer->parts.try_emplace({offset, bytes}, 0);
-  if (is_new)
-    found->second =
-        device.memory.open_window(fmt::format("{}, bytes {} to {}", buffer->name, offset, offset + bytes),
-                                  buffer->memory->backing, buffer->offset + offset, bytes);
-  return found->second;
+  return device.parts.open(device.memory, *buffer, offset, bytes);
 }
 
 VkResult CreateBuffer(Device& device, const VkBufferCreateInfo* info, VkBuffer* out) {
@@ -53,14 +70,15 @@ VkResult CreateBuffer(Device& device, const VkBufferCreateInfo* info, VkBuffer* 
                   fmt::format("a buffer has at most {} bytes, not {}", kMaxAllocationBytes, info->size));
   auto made = std::make_unique<Buffer>();
   made->bytes = info->size, made->usage = info->usage;
-  made->name = fmt::format("buffer {}", ++device.buffers_made);
+  made->number = ++device.buffers_made;
+  made->name = fmt::format("buffer {}", made->number);
   *out = made.release();
   return VK_SUCCESS;
 }
 
 void DestroyBuffer(Device& device, VkBuffer buffer) {
   if (!buffer) return;
-  for (const auto& [place, address] : buffer->parts) device.memory.free(address);
+  device.parts.forget(device.memory, *buffer);
   if (buffer->address) device.memory.free(buffer->address);
   delete buffer;
 }

@@ -33,6 +33,7 @@ struct LayoutBinding {
     return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC ||
            type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
   }
+  bool operator==(const LayoutBinding&) const = default;
   bool is_inline() const { return type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK; }
 };
 

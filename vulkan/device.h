@@ -12,6 +12,7 @@
 #include "pipeline/device.h"
 #include "vulkan/clock.h"
 #include "vulkan/instance.h"
+#include "vulkan/memory.h"
 #include "vulkan/queue.h"
 
 struct VkDevice_T : glint::vulkan::Dispatchable {
@@ -26,6 +27,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
   glint::mem::AddressSpace memory;
+  glint::vulkan::BufferParts parts;                              // of `memory`
   glint::frontend::ShaderCache shader_cache{{}};                 // in memory only
   VkDeviceSize allocated_bytes = 0;                              // of the heap
   uint32_t buffers_made = 0, images_made = 0, shaders_made = 0;  // They give objects names.

@@ -45,19 +45,22 @@ void run(Queue& queue, VkPipeline_T& pipeline, const exec::World& world, exec::P
   say_results(queue, pipeline.name, result.faults, prints);
 }
 
-// Frees what the builder has allocated, also when the launch ends with an exception.
+// Frees what the builder has allocated and, when they are many, parts of buffers, also when the launch ends
+// with an exception.
 class Allocations {
  public:
-  Allocations(mem::AddressSpace& memory, const pipeline::LaunchBuilder& builder)
-      : memory_(memory), builder_(builder) {}
+  Allocations(Device& device, const pipeline::LaunchBuilder& builder)
+      : memory_(device.memory), parts_(device.parts), builder_(builder) {}
   ~Allocations() {
     for (const Address each : builder_.allocations()) memory_.free(each);
+    parts_.trim(memory_);
   }
   Allocations(const Allocations&) = delete;
   Allocations& operator=(const Allocations&) = delete;
 
  private:
   mem::AddressSpace& memory_;
+  BufferParts& parts_;
   const pipeline::LaunchBuilder& builder_;
 };
 
@@ -69,7 +72,7 @@ void launch(Queue& queue, const Bindings& bound, const std::array<uint32_t, 3>& 
   Device& device = queue.device;
   const pipeline::LinkedShaders& shaders = bound.pipeline->compiled(device);
   pipeline::LaunchBuilder builder(shaders, device.memory);
-  const Allocations allocations(device.memory, builder);
+  const Allocations allocations(device, builder);
   for (const auto& [place, use] : shaders.declared()) bind(device, builder, bound, use);
   builder.set_push_constants(bound.push_constants);
   builder.set_blocks(0, groups, {bound.pipeline->name, 0, 0});

@@ -17,6 +17,8 @@ constexpr uint32_t kManyDescriptors = 1 << 20;
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT;
 // Choice: launches have threads of 32-bit numbers, so a whole axis of the largest blocks fits.
 constexpr uint32_t kMaxGroups = (1u << 22) - 1;
+// Vulkan asks for images of four samples, but only in formats that can be attachments, and here none can.
+constexpr VkSampleCountFlags kSamples = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT;
 
 void set_image_limits(VkPhysicalDeviceLimits& l) {
   l.maxImageDimension1D = l.maxImageDimension2D = l.maxImageDimensionCube = 16384;
@@ -28,9 +30,9 @@ void set_image_limits(VkPhysicalDeviceLimits& l) {
   l.subPixelPrecisionBits = l.subTexelPrecisionBits = l.mipmapPrecisionBits = 8;
   l.minTexelOffset = l.minTexelGatherOffset = -32;
   l.maxTexelOffset = l.maxTexelGatherOffset = 31;
-  l.sampledImageColorSampleCounts = l.sampledImageIntegerSampleCounts = VK_SAMPLE_COUNT_1_BIT;
-  l.sampledImageDepthSampleCounts = l.sampledImageStencilSampleCounts = VK_SAMPLE_COUNT_1_BIT;
-  l.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.sampledImageColorSampleCounts = l.sampledImageDepthSampleCounts = kSamples;
+  l.sampledImageStencilSampleCounts = kSamples;
+  l.sampledImageIntegerSampleCounts = l.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
   l.maxSampleMaskWords = 1;
 }
 
@@ -64,8 +66,8 @@ void set_graphics_limits(VkPhysicalDeviceLimits& l) {
   l.maxFramebufferLayers = 256;
   l.maxColorAttachments = l.maxFragmentOutputAttachments = 4;
   l.maxPerStageDescriptorInputAttachments = l.maxDescriptorSetInputAttachments = 4;
-  l.framebufferColorSampleCounts = l.framebufferDepthSampleCounts = VK_SAMPLE_COUNT_1_BIT;
-  l.framebufferStencilSampleCounts = l.framebufferNoAttachmentsSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.framebufferColorSampleCounts = l.framebufferDepthSampleCounts = kSamples;
+  l.framebufferStencilSampleCounts = l.framebufferNoAttachmentsSampleCounts = kSamples;
   l.maxViewports = 1;
   l.maxViewportDimensions[0] = l.maxViewportDimensions[1] = 4096;
   l.viewportBoundsRange[0] = -8192, l.viewportBoundsRange[1] = 8191;
@@ -102,6 +104,14 @@ void set_floats(DeviceProperties& p) {
   p.shaderSignedZeroInfNanPreserveFloat64 = VK_TRUE;
   p.shaderDenormPreserveFloat16 = p.shaderDenormPreserveFloat32 = p.shaderDenormPreserveFloat64 = VK_TRUE;
   p.shaderRoundingModeRTEFloat16 = p.shaderRoundingModeRTEFloat32 = p.shaderRoundingModeRTEFloat64 = VK_TRUE;
+}
+
+// An inline uniform block is a uniform buffer that a descriptor set holds itself.
+void set_inline_uniform_blocks(DeviceProperties& p) {
+  p.maxInlineUniformBlockSize = p.maxInlineUniformTotalSize = 1 << 16;
+  p.maxPerStageDescriptorInlineUniformBlocks = p.maxDescriptorSetInlineUniformBlocks = 64;
+  p.maxPerStageDescriptorUpdateAfterBindInlineUniformBlocks = 64;
+  p.maxDescriptorSetUpdateAfterBindInlineUniformBlocks = 64;
 }
 
 void set_descriptor_indexing(DeviceProperties& p) {
@@ -154,6 +164,7 @@ DeviceProperties properties_of(const pipeline::GpuParams&, const std::string& pr
   set_subgroups(p);
   set_floats(p);
   set_descriptor_indexing(p);
+  set_inline_uniform_blocks(p);
   p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
   p.maxMultiviewViewCount = 6, p.maxMultiviewInstanceIndex = (1u << 27) - 1;
   p.maxMemoryAllocationSize = p.maxBufferSize = kMaxAllocationBytes;

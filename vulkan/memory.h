@@ -1,11 +1,11 @@
 // Holds device memory and the buffers that are bound to it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "base/types.h"
 #include "memsys/address_space.h"
@@ -22,12 +22,11 @@ struct VkDeviceMemory_T {
 struct VkBuffer_T {
   VkDeviceSize bytes = 0;
   VkBufferUsageFlags usage = 0;
+  uint32_t number = 0;  // of the device's buffers
   std::string name;
   VkDeviceMemory memory = nullptr;
   VkDeviceSize offset = 0;     // of the buffer in the memory
   glint::Address address = 0;  // 0: not bound to memory
-  // Windows on parts, by offset and bytes. Descriptors show parts, and an access past the part is found.
-  std::map<std::pair<VkDeviceSize, VkDeviceSize>, glint::Address> parts;
 };
 
 namespace glint::vulkan {
@@ -44,6 +43,26 @@ struct HostRange {
 // Returns the bytes of `range` from `offset` on; VK_WHOLE_SIZE stands for all that follow. Throws Refusal
 // when the buffer has no memory or the range leaves it.
 HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range);
+
+// Keeps windows on parts of buffers. Descriptors show parts, and an access past the part is found.
+class BufferParts {
+ public:
+  // Returns the address of a part, whose end is the part's end. It holds until forget() or trim().
+  Address open(mem::AddressSpace& memory, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize bytes);
+  // Closes the windows on a buffer.
+  void forget(mem::AddressSpace& memory, const Buffer& buffer);
+  // Closes all windows when they are many: the address space has few places, and an application may have more
+  // dynamic offsets. Nobody may use an address of a part any longer.
+  void trim(mem::AddressSpace& memory);
+
+ private:
+  struct Part {
+    uint32_t buffer;  // its number: addresses must not depend on where the host puts the object
+    VkDeviceSize offset, bytes;
+    auto operator<=>(const Part&) const = default;
+  };
+  std::map<Part, Address> windows_;
+};
 
 // Returns the address of a part of a buffer whose end is the part's end. Throws as bytes_of().
 Address address_of_part(Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize bytes);

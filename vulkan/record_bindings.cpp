@@ -10,11 +10,14 @@
 namespace glint::vulkan {
 namespace {
 
-// Returns the set that is pushed to, as a copy of what was pushed before: earlier launches keep theirs.
+// Returns the set that is pushed to, as a copy of what was pushed before: earlier launches keep theirs. What
+// was pushed with a layout of other bindings is gone.
 DescriptorSet& pushed_set(CommandBuffer& commands, VkPipelineLayout layout, uint32_t number) {
   if (number >= layout->sets.size()) throw Refusal(fmt::format("the pipeline layout has no set {}", number));
   BoundSet& bound = commands.bound.sets[number];
-  bound.pushed = std::make_shared<DescriptorSet>(bound.pushed ? *bound.pushed : set_of(layout->sets[number]));
+  const DescriptorSetLayout& wanted = layout->sets[number];
+  const bool goes_on = bound.pushed && bound.pushed->layout.bindings == wanted.bindings;
+  bound.pushed = std::make_shared<DescriptorSet>(goes_on ? *bound.pushed : set_of(wanted));
   bound.set = bound.pushed.get();
   return *bound.set;
 }

@@ -103,6 +103,7 @@ constexpr spv::Capability kKnown[] = {Shader,
                                       RoundingModeRTE,
                                       BitInstructions,
                                       Groups,
+                                      DemoteToHelperInvocation,  // Only fragment shaders have helpers.
                                       DerivativeControl,
                                       ComputeDerivativeGroupQuadsNV,
                                       ComputeDerivativeGroupLinearNV};

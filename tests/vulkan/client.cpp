@@ -196,6 +196,25 @@ VkResult Client::download(const BoundImage& from, const MappedBuffer& to, VkExte
   });
 }
 
+VkBuffer Client::import(void* bytes, VkDeviceSize size) {
+  constexpr auto kHost = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
+  VkExternalMemoryBufferCreateInfo external{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO, nullptr,
+                                            kHost};
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, info.pNext = &external;
+  info.size = size, info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  VkBuffer out = nullptr;
+  check(vkCreateBuffer(device, &info, nullptr, &out), "vkCreateBuffer");
+  ends_.emplace_back([this, out] { vkDestroyBuffer(device, out, nullptr); });
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device, out, &needs);
+  needs.size = size;
+  const VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT,
+                                                nullptr, kHost, bytes};
+  check(vkBindBufferMemory(device, out, allocate(needs, &import), 0), "vkBindBufferMemory");
+  return out;
+}
+
 VkShaderModule Client::module(const std::string& glsl) {
   const std::vector<uint32_t> words =
       frontend::glsl_text_to_spirv(glsl, "client.comp", isa::Stage::Compute, {});
@@ -211,8 +230,11 @@ VkShaderModule Client::module(const std::string& glsl) {
 ComputePipeline Client::pipeline(const std::string& glsl, const PipelineOptions& options) {
   ComputePipeline out;
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (uint32_t i = 0; i < options.bindings.size(); ++i)
-    bindings.push_back({i, options.bindings[i], 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  for (uint32_t i = 0; i < options.bindings.size(); ++i) {
+    const bool is_inline = options.bindings[i] == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
+    bindings.push_back(
+        {i, options.bindings[i], is_inline ? options.inline_bytes : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  }
   VkDescriptorSetLayoutCreateInfo sets{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr,
                                        options.set_flags, uint32_t(bindings.size()), bindings.data()};
   check(vkCreateDescriptorSetLayout(device, &sets, nullptr, &out.set_layout), "vkCreateDescriptorSetLayout");

@@ -43,6 +43,7 @@ struct PipelineOptions {
   uint32_t push_constant_bytes = 0;
   const VkSpecializationInfo* constants = nullptr;
   VkDescriptorSetLayoutCreateFlags set_flags = 0;
+  uint32_t inline_bytes = 0;  // of each inline uniform block
 };
 
 // Holds an instance with a messenger, a device and a command pool. Everything that it made ends with it.
@@ -67,6 +68,8 @@ class Client {
   // Fills level 0 of an image from a buffer, or a buffer from it.
   VkResult upload(const MappedBuffer& from, const BoundImage& to, VkExtent3D extent);
   VkResult download(const BoundImage& from, const MappedBuffer& to, VkExtent3D extent);
+  // Makes a buffer over bytes of the host.
+  VkBuffer import(void* bytes, VkDeviceSize size);
   VkShaderModule module(const std::string& glsl);
   ComputePipeline pipeline(const std::string& glsl, const PipelineOptions& options);
   // Returns a set in which binding i has buffer i.

@@ -117,5 +117,66 @@ TEST_CASE("timestamps grow over work and reach a buffer with their availability"
   vkDestroyQueryPool(client.device, pool, nullptr);
 }
 
+TEST_CASE("synchronization2 orders commands, events and submissions", "[portable]") {
+  const VkPhysicalDeviceTimelineSemaphoreFeatures timelines{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES, nullptr, VK_TRUE};
+  const VkPhysicalDeviceSynchronization2Features features{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
+      const_cast<VkPhysicalDeviceTimelineSemaphoreFeatures*>(&timelines), VK_TRUE};
+  Client::Options options;
+  options.more_features = &features;
+  Client client(options);
+  const MappedBuffer first = client.buffer(64), second = client.buffer(64);
+  const VkSemaphore timeline = client.timeline(0);
+  VkEventCreateInfo made{VK_STRUCTURE_TYPE_EVENT_CREATE_INFO, nullptr, VK_EVENT_CREATE_DEVICE_ONLY_BIT};
+  VkEvent event = nullptr;
+  check(vkCreateEvent(client.device, &made, nullptr, &event), "vkCreateEvent");
+  client.at_end([&client, event] { vkDestroyEvent(client.device, event, nullptr); });
+  const VkMemoryBarrier2 barrier{
+      VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,   nullptr,
+      VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+      VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+  VkDependencyInfo dependency{};
+  dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  dependency.memoryBarrierCount = 1, dependency.pMemoryBarriers = &barrier;
+  const VkBufferCopy half{0, 32, 32}, all{0, 0, 64};
+  VkCommandBuffer fill = nullptr, copy = nullptr;
+  REQUIRE(client.record(fill, [&](VkCommandBuffer to) {
+    vkCmdFillBuffer(to, first.buffer, 0, VK_WHOLE_SIZE, 1);
+    vkCmdPipelineBarrier2(to, &dependency);
+    vkCmdFillBuffer(to, first.buffer, 0, 32, 2);
+    vkCmdSetEvent2(to, event, &dependency);
+    vkCmdWaitEvents2(to, 1, &event, &dependency);
+    vkCmdCopyBuffer(to, first.buffer, second.buffer, 1, &all);
+  }) == VK_SUCCESS);
+  REQUIRE(client.record(copy, [&](VkCommandBuffer to) {
+    vkCmdCopyBuffer(to, first.buffer, second.buffer, 1, &half);
+  }) == VK_SUCCESS);
+  const auto place = [&](uint64_t value) {
+    return VkSemaphoreSubmitInfo{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, nullptr, timeline, value,
+                                 VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,    0};
+  };
+  const VkSemaphoreSubmitInfo waited = place(3), between = place(4), end = place(5);
+  const VkCommandBufferSubmitInfo commands[] = {
+      {VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, nullptr, fill, 0},
+      {VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, nullptr, copy, 0}};
+  const VkSubmitInfo2 submits[] = {
+      {VK_STRUCTURE_TYPE_SUBMIT_INFO_2, nullptr, 0, 1, &waited, 1, &commands[0], 1, &between},
+      {VK_STRUCTURE_TYPE_SUBMIT_INFO_2, nullptr, 0, 1, &between, 1, &commands[1], 1, &end}};
+
+  REQUIRE(vkQueueSubmit2(client.queue, 2, submits, nullptr) == VK_SUCCESS);
+  uint64_t value = 9;
+  REQUIRE(vkGetSemaphoreCounterValue(client.device, timeline, &value) == VK_SUCCESS);
+  CHECK(value == 0);
+  const VkSemaphoreSignalInfo signal{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr, timeline, 3};
+  REQUIRE(vkSignalSemaphore(client.device, &signal) == VK_SUCCESS);
+  REQUIRE(vkQueueWaitIdle(client.queue) == VK_SUCCESS);
+
+  REQUIRE(vkGetSemaphoreCounterValue(client.device, timeline, &value) == VK_SUCCESS);
+  CHECK(value == 5);
+  for (uint32_t i = 0; i < 16; ++i) CHECK(first.as<uint32_t>()[i] == (i < 8 ? 2 : 1));
+  for (uint32_t i = 0; i < 16; ++i) CHECK(second.as<uint32_t>()[i] == 2);
+}
+
 }  // namespace
 }  // namespace glint::test
