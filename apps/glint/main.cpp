@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/plugins.h"
 #include "apps/glint/options/suggest.h"
 #include "apps/glint/session.h"
 #include "base/check.h"
 #include "base/diagnostics.h"
 #include "base/registry.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -86,7 +88,7 @@ int run_action(Session& session, const std::vector<std::string>& plugin_files) {
 
 int main_of(int argc, char** argv) {
   Session session{.arguments = {argv, argv + argc},
-                  .resources = Resources::find(),
+                  .resources = setup::Resources::find(),
                   .plugins = {},
                   .terminal = {},
                   .action = {}};

@@ -8,15 +8,15 @@
 
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/plugins.h"
-#include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
 #include "report/terminal/table.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 
 struct Session {
   std::vector<std::string> arguments;  // argv
-  Resources resources;
+  setup::Resources resources;
   std::vector<Plugin> plugins;   // loaded, in order
   report::Terminal terminal;     // abilities of stdout
   bool on_terminal = false;      // Stdout is a terminal, so progress may be drawn.

@@ -8,7 +8,7 @@ import sys
 
 import includes as standard_includes
 
-SOURCE_FOLDERS = ["base", "engine", "isa", "frontend", "memsys", "rtunit", "exec", "core", "pictures", "scenes", "pipeline", "amber", "vulkan", "report", "apps", "bench"]
+SOURCE_FOLDERS = ["base", "engine", "isa", "frontend", "memsys", "rtunit", "exec", "core", "pictures", "scenes", "pipeline", "amber", "vulkan", "report", "setup", "apps", "bench"]
 LIBRARIES = [folder for folder in SOURCE_FOLDERS if folder not in ("apps", "bench")]
 MAX_FILE_LINES, MAX_FUNCTION_LINES = 400, 60
 CLANG_FORMAT = 14  # versions lay out differently, so only this one may judge

@@ -13,6 +13,7 @@
 #include "apps/glint/bench/metrics_table.h"
 #include "apps/glint/bench/tables.h"
 #include "apps/glint/bench/view.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/run/recorded_run.h"
 #include "base/host_threads.h"
 #include "report/files/folder_lock.h"

@@ -12,13 +12,13 @@
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
-#include "apps/glint/options/resources.h"
 #include "apps/glint/run/launch_options.h"
 #include "base/regular_file.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
 #include "report/files/run_record.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -27,11 +27,11 @@ namespace fs = std::filesystem;
 constexpr const char* kMark = "workload.json";
 
 std::string bytes_of(const std::string& path) {
-  return text_of_file(path).value_or("");
+  return setup::text_of_file(path).value_or("");
 }
 
 // Hashes the names and contents of the shaders, so that edited shaders give new results.
-uint64_t hash_of_shaders(const Resources& resources) {
+uint64_t hash_of_shaders(const setup::Resources& resources) {
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(resources.shader_dir("")))
     if (entry.is_regular_file()) files.push_back(entry.path().string());

@@ -14,6 +14,7 @@
 #include "base/regular_file.h"
 #include "report/files/csv_table.h"
 #include "report/files/run_facts.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 
@@ -46,7 +47,8 @@ std::string read_metrics(const std::string& path) {
                                   "workloads that are complete",
                                   std::move(list));
   const std::optional<std::string> text = files.read(table.filename().string());
-  return text ? *text : read_file(path);  // read_file() says why it cannot be read, and reads pipes, too.
+  return text ? *text
+              : setup::read_file(path);  // read_file() says why it cannot be read, and reads pipes, too.
 }
 
 namespace {

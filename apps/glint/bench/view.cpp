@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 
-#include "apps/glint/options/resources.h"
+#include "apps/glint/options/output.h"
 #include "report/metrics/formula.h"
 #include "report/metrics/metrics.h"
 

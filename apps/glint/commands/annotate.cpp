@@ -10,6 +10,7 @@
 #include <iterator>
 #include <memory>
 
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "report/files/file_list.h"
@@ -19,6 +20,7 @@
 #include "report/files/run_record.h"
 #include "report/files/source_files.h"
 #include "report/metrics/compare.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -63,7 +65,7 @@ report::SourceMap read_source(const report::ListedFiles& files, const ProfileTab
                     "SPIR-V and ISA are in that file: name the run directory, not the profile alone");
   ProgramListing listing;
   for (const report::FileShare& file : report::files_of(profile)) listing.files.push_back(file.file);
-  report::SourceMap out = report::source_map({listing}, text_of_file);
+  report::SourceMap out = report::source_map({listing}, setup::text_of_file);
   out.programs.clear();
   return out;
 }

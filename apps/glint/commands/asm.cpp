@@ -4,16 +4,17 @@
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/resources.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/session.h"
 #include "isa/text.h"
 #include "isa/verify.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
 
 Exit assemble(const std::string& file, const std::string& output) {
-  const isa::Program program = isa::parse(read_file(file), file);
+  const isa::Program program = isa::parse(setup::read_file(file), file);
   Diagnostics diagnostics;
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();

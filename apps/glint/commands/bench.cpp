@@ -5,11 +5,12 @@
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/config.h"
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
-#include "apps/glint/options/oracles.h"
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/session.h"
+#include "setup/oracles.h"
 
 namespace glint::app {
 
@@ -62,7 +63,7 @@ void add_bench(Command app, Session& session) {
       "metrics.csv does not have it, and the exit code is 6 (default: no limit)");
   command.callback([&session, options] {
     session.action = [&session, options] {
-      options->settings = with_oracles(options->oracles, options->settings);
+      options->settings = setup::with_oracles(options->oracles, options->settings);
       return run_bench(session, *options);
     };
   });

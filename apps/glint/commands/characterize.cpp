@@ -9,6 +9,7 @@
 #include "apps/glint/bench/tables.h"
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/session.h"
 #include "report/characterize/characterization.h"
 #include "report/characterize/characterization_files.h"

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "apps/glint/bench/tables.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <memory>
 
-#include "apps/glint/options/resources.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
 #include "frontend/pass_times.h"

@@ -5,6 +5,7 @@
 
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
 #include "base/params.h"

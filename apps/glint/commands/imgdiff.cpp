@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"

@@ -8,11 +8,12 @@
 #include <optional>
 
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/resources.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/run/launch_defaults.h"
 #include "apps/glint/session.h"
 #include "pipeline/description/defaults.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -37,7 +38,7 @@ std::string launch_of(const InitOptions& options, const std::string& folder) {
     fmt::print(stderr, "note: there was no '{}', so a kernel to begin with was written there\n", file);
     return out;
   }
-  const std::optional<std::string> text = text_of_file(file);
+  const std::optional<std::string> text = setup::text_of_file(file);
   if (!text) throw UserError({}, fmt::format("cannot read '{}'", file));
   return default_launch(*text, file, folder);
 }

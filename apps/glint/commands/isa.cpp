@@ -4,12 +4,13 @@
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/config.h"
-#include "apps/glint/options/resources.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/session.h"
 #include "isa/op_row.h"
 #include "isa/paths.h"
 #include "isa/reference.h"
+#include "setup/config.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -19,24 +20,25 @@ struct IsaOptions {
   bool index = false, pages = false;
 };
 
-isa::PresetTimes times_of(const Resources& resources, const std::string& preset) {
+isa::PresetTimes times_of(const setup::Resources& resources, const std::string& preset) {
   isa::PresetTimes out{preset, {}};
-  const auto units = read_preset(resources, preset).core.units.by_unit();
+  const auto units = setup::read_preset(resources, preset).core.units.by_unit();
   for (size_t i = 0; i < units.size(); ++i) out.unit[i] = {units[i].latency, units[i].interval};
   return out;
 }
 
 // Presets with a base are left out, because they hardly change times of ops.
-std::vector<isa::PresetTimes> all_presets(const Resources& resources) {
+std::vector<isa::PresetTimes> all_presets(const setup::Resources& resources) {
   std::vector<isa::PresetTimes> out;
-  for (const std::string& name : names_of_whole_presets(resources)) out.push_back(times_of(resources, name));
+  for (const std::string& name : setup::names_of_whole_presets(resources))
+    out.push_back(times_of(resources, name));
   return out;
 }
 
 // Returns the times of the presets that load. It says on stderr why a preset does not load.
-std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
+std::vector<isa::PresetTimes> sound_presets(const setup::Resources& resources) {
   std::vector<isa::PresetTimes> out;
-  for (const std::string& name : names_of_whole_presets(resources)) {
+  for (const std::string& name : setup::names_of_whole_presets(resources)) {
     try {
       out.push_back(times_of(resources, name));
     } catch (const Error& error) {
@@ -46,7 +48,7 @@ std::vector<isa::PresetTimes> sound_presets(const Resources& resources) {
   return out;
 }
 
-std::string text_of(const Resources& resources, const IsaOptions& options) {
+std::string text_of(const setup::Resources& resources, const IsaOptions& options) {
   if (!options.table.empty()) return isa::instruction_table(times_of(resources, options.table));
   if (!options.page.empty()) return isa::reference_page(options.page, all_presets(resources));
   if (options.index) return isa::reference_index(all_presets(resources));

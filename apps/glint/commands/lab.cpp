@@ -14,10 +14,12 @@
 #include "apps/glint/lab/pairs.h"
 #include "apps/glint/lab/results.h"
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/oracles.h"
+#include "apps/glint/options/config.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/report_writer.h"
 #include "apps/glint/session.h"
 #include "report/files/run_directory.h"
+#include "setup/oracles.h"
 
 namespace glint::app {
 namespace {
@@ -99,7 +101,7 @@ BenchOptions bench_of(const Experiment& experiment, const LabArm& arm, const Lab
   out.config = experiment.config;
   std::vector<std::string> oracles = options.oracles;
   oracles.insert(oracles.end(), arm.oracles.begin(), arm.oracles.end());
-  out.settings = with_oracles(oracles, experiment.settings);
+  out.settings = setup::with_oracles(oracles, experiment.settings);
   out.settings.insert(out.settings.end(), arm.settings.begin(), arm.settings.end());
   out.out = folder + "/" + arm.name;
   out.frame.size = experiment.size;
@@ -157,7 +159,7 @@ Exit run_lab(const Session& session, const LabOptions& options) {
                                  ? "out/lab-" + experiment.name
                                  : "out/lab-" + experiment.name + "-" + stem_of(options.config);
   for (const LabArm& arm : experiment.arms) {
-    const std::vector<std::string> changes = with_oracles(arm.oracles, arm.settings);
+    const std::vector<std::string> changes = setup::with_oracles(arm.oracles, arm.settings);
     print_output("\n{}: {}\n", arm.name,
                  changes.empty() ? "the machine as it is" : fmt::format("{}", fmt::join(changes, " ")));
     if (const Exit exit = run_bench(session, bench_of(experiment, arm, options, folder)); exit != Exit::Ok)

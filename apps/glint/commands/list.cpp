@@ -6,7 +6,7 @@
 
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/oracles.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
 #include "base/registry.h"
@@ -17,6 +17,8 @@
 #include "report/terminal/table.h"
 #include "scenes/overrides.h"
 #include "scenes/scene.h"
+#include "setup/oracles.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -58,10 +60,10 @@ Rows metric_rows() {
 }
 
 // Returns the presets. The first comment line of a preset says what it is.
-Rows config_rows(const Resources& resources) {
+Rows config_rows(const setup::Resources& resources) {
   Rows rows;
   for (const std::string& name : resources.config_names()) {
-    const std::string text = read_file(resources.config_path(name));
+    const std::string text = setup::read_file(resources.config_path(name));
     const bool comment = text.rfind("# ", 0) == 0;
     rows.push_back({name, comment ? text.substr(2, text.find('\n') - 2) : ""});
   }
@@ -77,7 +79,7 @@ Rows policy_rows() {
 
 Rows oracle_rows() {
   Rows rows;
-  for (const auto& [name, doc] : oracle_list()) rows.push_back({name, doc});
+  for (const auto& [name, doc] : setup::oracle_list()) rows.push_back({name, doc});
   return rows;
 }
 

@@ -14,6 +14,7 @@
 #include "apps/glint/microbench/kernel.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/session.h"
 #include "report/files/csv_field.h"
 #include "report/terminal/table.h"

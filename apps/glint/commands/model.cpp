@@ -10,6 +10,7 @@
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
 #include "report/files/file_list.h"

@@ -9,10 +9,11 @@
 #include <set>
 #include <utility>
 
-#include "apps/glint/options/config.h"
-#include "apps/glint/options/oracles.h"
 #include "base/diagnostics.h"
 #include "report/terminal/table.h"
+#include "setup/config.h"
+#include "setup/oracles.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -20,20 +21,21 @@ namespace {
 constexpr char kJoint = '+';  // between the names of two arms; no arm's own name has it
 
 // Returns the keys that the arm's settings change.
-std::set<std::string> keys_of(const Resources& resources, const LabArm& arm) {
+std::set<std::string> keys_of(const setup::Resources& resources, const LabArm& arm) {
   std::set<std::string> out;
-  for (const std::string& setting : without_oracles(resources, with_oracles(arm.oracles, arm.settings)))
+  for (const std::string& setting :
+       setup::without_oracles(resources, setup::with_oracles(arm.oracles, arm.settings)))
     out.insert(setting.substr(0, setting.find('=')));
   return out;
 }
 
 // Returns why the machine of an arm cannot be, or nothing when it can. Only the first message counts, without
 // its place.
-std::string why_refused(const Resources& resources, const Experiment& experiment, const LabArm& arm) {
-  std::vector<std::string> settings = with_oracles(arm.oracles, experiment.settings);
+std::string why_refused(const setup::Resources& resources, const Experiment& experiment, const LabArm& arm) {
+  std::vector<std::string> settings = setup::with_oracles(arm.oracles, experiment.settings);
   settings.insert(settings.end(), arm.settings.begin(), arm.settings.end());
   try {
-    read_preset(resources, experiment.config, settings);
+    setup::read_preset(resources, experiment.config, settings);
     return "";
   } catch (const UserError& error) {
     const std::string what = error.what(), mark = "error: ";
@@ -56,7 +58,7 @@ LabArm both(const LabArm& a, const LabArm& b) {
   return out;
 }
 
-std::string why_not(const Resources& resources, const Experiment& experiment, const LabArm& a,
+std::string why_not(const setup::Resources& resources, const Experiment& experiment, const LabArm& a,
                     const LabArm& b) {
   const std::set<std::string> keys = keys_of(resources, a);
   for (const std::string& key : keys_of(resources, b))
@@ -72,7 +74,7 @@ bool is_refused(const std::vector<RefusedPair>& refused, const std::string& firs
 
 }  // namespace
 
-std::vector<RefusedPair> add_pairs(const Resources& resources, Experiment& experiment) {
+std::vector<RefusedPair> add_pairs(const setup::Resources& resources, Experiment& experiment) {
   std::vector<RefusedPair> refused;
   const std::vector<LabArm> single = experiment.arms;
   for (const LabArm& arm : single)

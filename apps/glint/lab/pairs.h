@@ -6,7 +6,7 @@
 
 #include "apps/glint/lab/experiment.h"
 #include "apps/glint/lab/results.h"
-#include "apps/glint/options/resources.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 
@@ -18,7 +18,7 @@ struct RefusedPair {
 // Adds the arm "a+b" for each two arms with the same baseline, with the settings of both. Returns the pairs
 // that no machine can have: the configuration refuses them, or both arms change the same key. Throws
 // UserError when a single arm is refused.
-std::vector<RefusedPair> add_pairs(const Resources& resources, Experiment& experiment);
+std::vector<RefusedPair> add_pairs(const setup::Resources& resources, Experiment& experiment);
 
 // Returns the geometric means of the speed-ups by two arms, those of single arms on the diagonal, and below
 // them why pairs are refused. An empty text: the experiment has no pairs.

@@ -10,12 +10,12 @@
 #include <iterator>
 #include <optional>
 
-#include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
 #include "report/files/heat_files.h"
 #include "report/files/profile_files.h"
 #include "report/files/source_files.h"
 #include "report/files/trace_files.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -153,9 +153,9 @@ std::vector<std::string> write_observation(const pipeline::Observation& observe,
   std::vector<std::string> lines;
   if (observe.profile) {
     directory.write("profile.csv", report::profile_csv(result.profile));
-    directory.write("profile.folded", report::profile_folded(result.profile, text_of_file));
+    directory.write("profile.folded", report::profile_folded(result.profile, setup::text_of_file));
     directory.write("source.json",
-                    report::source_json(report::source_map(result.profile.programs, text_of_file)));
+                    report::source_json(report::source_map(result.profile.programs, setup::text_of_file)));
     lines.push_back("profile    " + directory.path_of("profile.csv") + " (glint annotate " +
                     directory.path() + ")");
   }

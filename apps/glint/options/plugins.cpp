@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <string_view>
 
-#include "apps/glint/options/resources.h"
 #include "base/diagnostics.h"
 #include "base/file_store.h"
 #include "base/plugin_stamp.h"
 #include "base/registry.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -35,7 +35,7 @@ void check_stamp(const std::string& path, std::string_view bytes) {
 
 Plugin load(const std::string& file) {
   const std::string path = std::filesystem::absolute(file).lexically_normal().string();
-  const std::string bytes = read_file(path);
+  const std::string bytes = setup::read_file(path);
   check_stamp(path, bytes);
   const size_t before = all_policies().size();
   const bool is_loaded_already = ::dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD) != nullptr;

@@ -15,6 +15,7 @@
 #include "report/files/run_record.h"
 #include "report/page/lab.h"
 #include "report/page/suite.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -29,14 +30,14 @@ constexpr double kCyclesTold = 1e-9;
 
 void add_models(const std::string& path, const std::string& source, const std::string& folder,
                 ReportInputs& out) {
-  nlohmann::ordered_json document = report::models_json(report::parse_models(read_file(path), path));
+  nlohmann::ordered_json document = report::models_json(report::parse_models(setup::read_file(path), path));
   document["source"] = source;
   out.models.push_back({folder, std::move(document)});
 }
 
 void add_characterization(const fs::path& file, const std::string& folder, ReportInputs& out) {
   out.characterizations.push_back(
-      {folder, report::read_characterization(read_file(file.string()), file.string())});
+      {folder, report::read_characterization(setup::read_file(file.string()), file.string())});
 }
 
 // Returns why a run cannot be shown, or "" when it is complete.
@@ -62,7 +63,7 @@ nlohmann::ordered_json collection(const char* kind, const std::string& source) {
 // Adds the points of a sweep that are complete, and names the others.
 void add_sweep(const std::string& folder, ReportInputs& out) {
   const std::string path = folder + "/sweep.json";
-  const auto plan = nlohmann::ordered_json::parse(read_file(path), nullptr, false);
+  const auto plan = nlohmann::ordered_json::parse(setup::read_file(path), nullptr, false);
   const auto is_text = [](const auto& value) { return value.is_string(); };
   if (!plan.is_object() || !plan.contains("axes") || !plan["axes"].is_object() || !plan.contains("runs") ||
       !plan["runs"].is_array() || !std::all_of(plan["runs"].begin(), plan["runs"].end(), is_text))
@@ -136,7 +137,7 @@ void add_named(const std::string& name, ReportInputs& out) {
   if (fs::is_regular_file(path)) return add_models(name, name, "", out);
   if (!is_run && fs::exists(path / "lab.json")) {
     const std::string file = (path / "lab.json").string();
-    out.labs.push_back(report::read_lab(read_file(file), file));
+    out.labs.push_back(report::read_lab(setup::read_file(file), file));
     out.labs.back()["source"] = name;
     return;
   }

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string_view>
 
-#include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/options/report_inputs.h"
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/session.h"
@@ -21,6 +21,8 @@
 #include "report/files/run_record.h"
 #include "report/page/data.h"
 #include "report/page/page.h"
+#include "setup/config.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -30,30 +32,32 @@ constexpr const char* kDefaultPreset = "mobile";  // the default of --config
 // Returns the preset of Glint to compare a run's configuration with. It is the preset that the run names,
 // else one with the same values, else the default. A user's file is never read again, because it may have
 // changed since the run.
-std::string preset_of(const Resources& resources, const report::RunRecord& facts) {
+std::string preset_of(const setup::Resources& resources, const report::RunRecord& facts) {
   const std::vector<std::string> presets = resources.config_names();
   if (const std::string name = facts.text("config.name");
       std::find(presets.begin(), presets.end(), name) != presets.end())
     return name;
   for (const std::string& preset : presets)
-    if (fmt::format("{:016x}", config_hash(read_preset(resources, preset))) == facts.text("config.hash"))
+    if (fmt::format("{:016x}", setup::config_hash(setup::read_preset(resources, preset))) ==
+        facts.text("config.hash"))
       return preset;
   return kDefaultPreset;
 }
 
-report::PageRun page_run(const Resources& resources, const std::string& directory) {
+report::PageRun page_run(const setup::Resources& resources, const std::string& directory) {
   report::PageRun run{.directory = directory, .preset_name = {}, .preset = {}};
   const std::string path = directory + "/run.json";
   if (!std::filesystem::exists(path)) return run;  // page_data() says what is wrong.
   report::RunRecord facts;
   facts.add_facts(report::read_run_facts(path).dump(), path);
   run.preset_name = preset_of(resources, facts);
-  run.preset = report::config_file(describe_params(read_preset(resources, run.preset_name)), run.preset_name);
+  run.preset =
+      report::config_file(describe_params(setup::read_preset(resources, run.preset_name)), run.preset_name);
   return run;
 }
 
 std::string page_of(const Session& session, const nlohmann::ordered_json& data) {
-  const auto web = [&](const char* name) { return read_file(session.resources.web_file(name)); };
+  const auto web = [&](const char* name) { return setup::read_file(session.resources.web_file(name)); };
   return report::page(data, {.frame = web("report.html"),
                              .style = web("report.css"),
                              .script = web("report.js"),

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "amber/run.h"
+#include "apps/glint/options/output.h"
 
 namespace glint::app {
 

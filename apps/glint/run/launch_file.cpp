@@ -12,9 +12,9 @@
 #include <optional>
 #include <string_view>
 
-#include "apps/glint/options/resources.h"
 #include "base/toml_text.h"
 #include "pipeline/description/value.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -227,7 +227,7 @@ class Reader {
 
   void fill_from_file(const toml::table& table, LaunchArgument& out, std::optional<int64_t> bytes) {
     const std::string file = beside(text(table, "file").value_or(""));
-    const std::optional<std::string> read = text_of_file(file);
+    const std::optional<std::string> read = setup::text_of_file(file);
     if (!read) return errors_.error(out.where, fmt::format("cannot read '{}'", file));
     const std::string& data = *read;
     out.bytes.resize(bytes ? size_t(*bytes) : data.size());

@@ -6,7 +6,8 @@
 
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
-#include "apps/glint/options/oracles.h"
+#include "setup/oracles.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
@@ -87,7 +88,7 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   options.config_given = command.count("--config") > 0;
   options.mode_given = command.count("--mode") > 0;
   options.on_fault = options.on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
-  options.settings = with_oracles(options.oracles, options.settings);
+  options.settings = setup::with_oracles(options.oracles, options.settings);
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
 }
 
@@ -97,7 +98,7 @@ void check_max_cycles(uint64_t max_cycles, bool timing) {
                     "--max-instructions bounds the instructions of a warp");
 }
 
-pipeline::GpuParams gpu_of(const Resources& resources, const LaunchOptions& options) {
+pipeline::GpuParams gpu_of(const setup::Resources& resources, const LaunchOptions& options) {
   pipeline::GpuParams gpu = read_config(resources, options.config, options.settings);
   if (options.max_instructions > 0) gpu.core.instruction_budget = options.max_instructions;
   return gpu;

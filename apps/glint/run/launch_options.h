@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
-#include "apps/glint/options/resources.h"
 #include "apps/glint/options/shader_options.h"
 #include "exec/fault.h"
 #include "pipeline/params.h"
 #include "pipeline/run_profile.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 
@@ -48,6 +48,6 @@ void add_max_cycles_option(Command command, uint64_t& max_cycles,
 void check_max_cycles(uint64_t max_cycles, bool timing);
 
 // Returns the configuration with its overrides, of which max_instructions is one.
-pipeline::GpuParams gpu_of(const Resources& resources, const LaunchOptions& options);
+pipeline::GpuParams gpu_of(const setup::Resources& resources, const LaunchOptions& options);
 
 }  // namespace glint::app

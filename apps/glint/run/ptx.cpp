@@ -7,20 +7,19 @@
 #include <fstream>
 #include <iterator>
 
-#include "apps/glint/options/config.h"
 #include "apps/glint/options/observe_options.h"
-#include "apps/glint/options/resources.h"
 #include "apps/glint/run/launch_file.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pipeline/kernel_launch.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
+#include "setup/resources.h"
 
 namespace glint::app {
 namespace {
 
 std::string read_text(const std::string& path) {
-  std::optional<std::string> text = text_of_file(path);
+  std::optional<std::string> text = setup::text_of_file(path);
   if (!text) throw UserError({}, fmt::format("cannot read '{}'", path));
   return std::move(*text);
 }

@@ -13,12 +13,13 @@
 #include <utility>
 
 #include "apps/glint/bench/progress_pipe.h"
-#include "apps/glint/options/config.h"
+#include "apps/glint/options/output.h"
 #include "apps/glint/run/stop_signals.h"
 #include "apps/glint/run/summary.h"
 #include "memsys/peak.h"
 #include "report/files/stat_writer.h"
 #include "report/terminal/progress.h"
+#include "setup/config.h"
 
 namespace glint::app {
 
@@ -32,7 +33,7 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
   for (const Plugin& plugin : session.plugins)
     info.plugins.emplace_back(plugin.path, fmt::format("{:016x}", plugin.hash));
   info.config = config;
-  info.config_hash = config_hash(gpu);
+  info.config_hash = setup::config_hash(gpu);
   info.mode = mode;
   const mem::Peak peak = mem::peak(gpu.memory, gpu.cores, gpu.clock_mhz);
   info.memory_peaks = {

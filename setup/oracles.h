@@ -6,16 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "apps/glint/options/command_line.h"
-#include "apps/glint/options/resources.h"
+#include "setup/resources.h"
 
-namespace glint::app {
+namespace glint::setup {
 
 // Returns name and meaning of every oracle.
 std::vector<std::pair<std::string, std::string>> oracle_list();
-
-// Adds the option --oracle. `names` gets what the user names.
-void add_oracle_option(Command command, std::vector<std::string>& names);
 
 // Returns the settings with the oracles before them, so that a setting of the user wins. An oracle stands as
 // "oracle=NAME" until read_config() replaces it.
@@ -27,4 +23,4 @@ std::vector<std::string> with_oracles(const std::vector<std::string>& names,
 std::vector<std::string> without_oracles(const Resources& resources,
                                          const std::vector<std::string>& settings);
 
-}  // namespace glint::app
+}  // namespace glint::setup

@@ -1,16 +1,16 @@
 // Knows which keys make an oracle.
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/glint/options/oracles.h"
+#include "setup/oracles.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <string_view>
 
-#include "apps/glint/options/config.h"
 #include "base/diagnostics.h"
 #include "base/params.h"
+#include "setup/config.h"
 
-namespace glint::app {
+namespace glint::setup {
 namespace {
 
 constexpr std::string_view kKey = "oracle=";
@@ -68,16 +68,6 @@ std::vector<std::pair<std::string, std::string>> oracle_list() {
   return out;
 }
 
-void add_oracle_option(Command command, std::vector<std::string>& names_given) {
-  command
-      .add_option("--oracle", names_given,
-                  "Give the machine what no hardware can have, to bound what an idea can gain; 'glint list "
-                  "oracles' has the names; repeatable")
-      .type_name("NAME")
-      .one_of(names())
-      .allow_extra_args(false);
-}
-
 std::vector<std::string> with_oracles(const std::vector<std::string>& names,
                                       const std::vector<std::string>& settings) {
   std::vector<std::string> out;
@@ -100,4 +90,4 @@ std::vector<std::string> without_oracles(const Resources& resources,
   return out;
 }
 
-}  // namespace glint::app
+}  // namespace glint::setup

@@ -1,19 +1,19 @@
-// Finds presets and shaders: beside an installed executable, or in the source tree of a built one.
+// Finds presets and shaders: beside an installed program or library, or in the source tree of a built one.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <fmt/format.h>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "base/diagnostics.h"
-
-namespace glint::app {
+namespace glint::setup {
 
 class Resources {
  public:
-  // Looks relative to the running executable first, then in the source folder that was known at compile time.
+  // Looks from the folder of `binary` upwards first, for share/glint or a source tree, and then in the source
+  // folder that was known at compile time.
+  static Resources find(const std::string& binary);
+  // Does so from the running executable.
   static Resources find();
   explicit Resources(std::string root) : root_(std::move(root)) {}
 
@@ -39,21 +39,4 @@ std::string read_file(const std::string& path);
 // Returns the same, but nothing where the file cannot be read.
 std::optional<std::string> text_of_file(const std::string& path);
 
-// Is thrown when standard output takes no more: the disk is full, or the descriptor is closed.
-class OutputError : public Error {
- public:
-  OutputError() : Error(Exit::Failure, "cannot write to standard output") {}
-};
-
-// Writes to `path` (report::write_file()), or to stdout when `path` is empty or "-". All output to stdout
-// goes this way, so that no loss goes unnoticed. Throws UserError when the file cannot be written, and
-// OutputError when stdout cannot.
-void write_output(const std::string& path, const std::string& bytes);
-
-// Prints to stdout as fmt::print() does.
-template <class... Args>
-void print_output(fmt::format_string<Args...> text, Args&&... args) {
-  write_output("", fmt::format(text, std::forward<Args>(args)...));
-}
-
-}  // namespace glint::app
+}  // namespace glint::setup

@@ -1,9 +1,8 @@
 // Finds and reads files.
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/glint/options/resources.h"
+#include "setup/resources.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -12,9 +11,8 @@
 #include <utility>
 
 #include "base/diagnostics.h"
-#include "report/files/run_directory.h"
 
-namespace glint::app {
+namespace glint::setup {
 namespace fs = std::filesystem;
 namespace {
 
@@ -52,15 +50,18 @@ std::string path_in(const std::string& folder, const std::string& name_or_path, 
 
 }  // namespace
 
+Resources Resources::find(const std::string& binary) {
+  std::error_code error;
+  const fs::path folder = fs::absolute(binary, error).parent_path();
+  for (fs::path path = folder; path.has_relative_path(); path = path.parent_path())
+    for (const fs::path& root : {path / "share/glint", path})
+      if (is_root(root)) return Resources(root.string());
+  return Resources(GLINT_SOURCE_DIR);
+}
+
 Resources Resources::find() {
   std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  if (const fs::path installed = folder.parent_path() / "share/glint"; is_root(installed))
-    return Resources(installed.string());
-  for (fs::path path = folder; path.has_relative_path();
-       path = path.parent_path())  // goes from the build tree upwards
-    if (is_root(path)) return Resources(path.string());
-  return Resources(GLINT_SOURCE_DIR);
+  return find(fs::read_symlink("/proc/self/exe", error).string());
 }
 
 std::vector<std::string> Resources::config_names() const {
@@ -92,10 +93,4 @@ std::optional<std::string> text_of_file(const std::string& path) {
   return std::string{std::istreambuf_iterator<char>(in), {}};
 }
 
-void write_output(const std::string& path, const std::string& bytes) {
-  if (!path.empty() && path != "-") return report::write_file(path, bytes);
-  const bool is_written = std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();
-  if (std::fflush(stdout) != 0 || !is_written) throw OutputError();
-}
-
-}  // namespace glint::app
+}  // namespace glint::setup
