@@ -204,16 +204,17 @@ def members_of(struct):
 
 def feature_tables(registry, extensions, announced):
     wanted, known, out, rows = set(announced["features"]), set(), [], []
+    with_graphics = wanted | set(announced["universal_features"])
     structs = ["VkPhysicalDeviceFeatures"] + structs_that_extend(registry, "VkPhysicalDeviceFeatures2", extensions)
     for name in structs:
         members, s_type = members_of(registry.structs[name])
         known |= {member for member, _ in members}
         out.append(f"const Feature k{name}[] = {{\n")
-        out += [f'    {{"{member}", {str(member in wanted).lower()}}},\n' for member, _ in members]
+        out += [f'    {{"{member}", {str(member in wanted).lower()}, {str(member in with_graphics).lower()}}},\n' for member, _ in members]
         out.append("};\n")
         rows.append(f"    {{{s_type or 'VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2'}, k{name}}},\n")
-    if wanted - known:
-        raise Wrong("no announced version or extension has these features: " + " ".join(sorted(wanted - known)))
+    if with_graphics - known:
+        raise Wrong("no announced version or extension has these features: " + " ".join(sorted(with_graphics - known)))
     return "".join(out) + "const FeatureStruct kFeatureStructs[] = {\n" + "".join(rows) + "};\n"
 
 

@@ -22,6 +22,7 @@ std::string_view name_of(VkFormat format);
 struct Feature {
   std::string_view name;
   bool announced;
+  bool with_graphics;  // whether it is announced when the device pretends to have graphics
 };
 // Describes a structure of features: after sType and pNext it has one VkBool32 for each member.
 struct FeatureStruct {

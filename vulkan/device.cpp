@@ -15,7 +15,7 @@ void ask_for(Device& device, VkStructureType type, const void* members) {
   auto* asked = static_cast<const VkBool32*>(members);
   for (const Feature& each : features_of(type)) {
     if (!*asked++) continue;
-    if (!each.announced)
+    if (!announces(device.physical, each))
       throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, fmt::format("the device has no feature {}", each.name));
     device.features.insert(each.name);
   }
@@ -33,6 +33,8 @@ VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, 
     ask_for(*made, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, info->pEnabledFeatures);
   for (auto* each = static_cast<const VkBaseInStructure*>(info->pNext); each; each = each->pNext)
     ask_for(*made, each->sType, each + 1);
+  if (physical.instance.settings.is_universal)
+    made->messages().warning("GLINT_VK_QUEUE is universal: the device announces graphics and has none of it");
   *out = made.release();
   return VK_SUCCESS;
 }

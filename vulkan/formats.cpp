@@ -69,17 +69,27 @@ VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
   return out;
 }
 
-void GetPhysicalDeviceFormatProperties(PhysicalDevice&, VkFormat format, VkFormatProperties* out) {
+// Returns what the device pretends of images with a format: a universal queue has to have a format of depth
+// and stencil, and Dawn ends the process where there is none. An image with it cannot be made.
+VkFormatFeatureFlags2 pretended_features_of(const PhysicalDevice& device, VkFormat format) {
+  return device.instance.settings.is_universal && format == VK_FORMAT_D32_SFLOAT_S8_UINT
+             ? VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT
+             : 0;
+}
+
+void GetPhysicalDeviceFormatProperties(PhysicalDevice& device, VkFormat format, VkFormatProperties* out) {
   // The flags of the older structure are the lower half.
-  out->linearTilingFeatures = out->optimalTilingFeatures =
-      VkFormatFeatureFlags(image_features_of(format) & ~kWithoutFormat);
+  out->linearTilingFeatures = VkFormatFeatureFlags(image_features_of(format) & ~kWithoutFormat);
+  out->optimalTilingFeatures =
+      out->linearTilingFeatures | VkFormatFeatureFlags(pretended_features_of(device, format));
   out->bufferFeatures = VkFormatFeatureFlags(buffer_features_of(format) & ~kWithoutFormat);
 }
 
 void GetPhysicalDeviceFormatProperties2(PhysicalDevice& device, VkFormat format, VkFormatProperties2* out) {
   GetPhysicalDeviceFormatProperties(device, format, &out->formatProperties);
   if (auto* more = find_in_output<VkFormatProperties3>(out, VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_3)) {
-    more->linearTilingFeatures = more->optimalTilingFeatures = image_features_of(format);
+    more->linearTilingFeatures = image_features_of(format);
+    more->optimalTilingFeatures = more->linearTilingFeatures | pretended_features_of(device, format);
     more->bufferFeatures = buffer_features_of(format);
   }
 }

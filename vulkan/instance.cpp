@@ -10,6 +10,18 @@
 
 namespace glint::vulkan {
 
+namespace {
+
+Settings settings() {
+  try {
+    return settings_of_environment();
+  } catch (const UserError& error) {
+    throw Refusal(VK_ERROR_INITIALIZATION_FAILED, error.what());
+  }
+}
+
+}  // namespace
+
 VkResult EnumerateInstanceVersion(uint32_t* version) {
   *version = VK_API_VERSION_1_3;
   return VK_SUCCESS;
@@ -31,12 +43,7 @@ VkResult CreateInstance(const VkInstanceCreateInfo* info, VkInstance* out) {
     if (!is_announced(instance_extensions(), info->ppEnabledExtensionNames[i]))
       throw Refusal(VK_ERROR_EXTENSION_NOT_PRESENT,
                     fmt::format("there is no instance extension {}", info->ppEnabledExtensionNames[i]));
-  auto made = std::make_unique<Instance>();
-  try {
-    made->settings = settings_of_environment();
-  } catch (const UserError& error) {
-    throw Refusal(VK_ERROR_INITIALIZATION_FAILED, error.what());
-  }
+  auto made = std::make_unique<Instance>(settings());
   if (const auto* messenger = find_in_chain<VkDebugUtilsMessengerCreateInfoEXT>(
           info, VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT)) {
     made->first_messenger = messenger_of(*messenger);

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "pipeline/params.h"
 #include "vulkan/announced.h"
@@ -21,7 +22,9 @@ struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
 };
 
 struct VkInstance_T : glint::vulkan::Dispatchable {
-  glint::vulkan::Settings settings;
+  explicit VkInstance_T(glint::vulkan::Settings asked) : settings(std::move(asked)) {}
+
+  const glint::vulkan::Settings settings;  // The device reads them when it is made.
   glint::vulkan::Messages messages;
   VkDebugUtilsMessengerEXT_T first_messenger;  // of VkInstanceCreateInfo
   VkPhysicalDevice_T physical{*this};
@@ -38,7 +41,9 @@ inline constexpr uint32_t kMaxPushConstantBytes = 256;
 inline constexpr VkDeviceSize kHostPointerAlignment = 4096;
 
 // Says what the device can do with formats, sizes and numbers.
-VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu);
+VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_universal);
+// Returns whether the device says that it has a feature.
+bool announces(const PhysicalDevice& device, const Feature& feature);
 DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset);
 
 }  // namespace glint::vulkan

@@ -80,6 +80,17 @@ void set_graphics_limits(VkPhysicalDeviceLimits& l) {
   l.discreteQueuePriorities = 2;
 }
 
+// Raises what programs ask of graphics before they compute: the least that WebGPU wants of a device.
+void set_universal_limits(VkPhysicalDeviceLimits& l) {
+  l.maxFramebufferWidth = l.maxFramebufferHeight = 16384;
+  l.maxViewportDimensions[0] = l.maxViewportDimensions[1] = 16384;
+  l.viewportBoundsRange[0] = -32768, l.viewportBoundsRange[1] = 32767;
+  l.maxColorAttachments = l.maxFragmentOutputAttachments = 8;
+  l.maxFragmentCombinedOutputResources = 32;
+  l.maxVertexOutputComponents = l.maxFragmentInputComponents = 128;
+  l.maxDrawIndexedIndexValue = 0xffff'ffff;
+}
+
 template <size_t N>
 void set_text(char (&to)[N], const std::string& text) {
   std::strncpy(to, text.c_str(), N - 1);
@@ -140,12 +151,13 @@ void set_descriptor_indexing(DeviceProperties& p) {
 
 }  // namespace
 
-VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu) {
+VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_universal) {
   VkPhysicalDeviceLimits l{};
   set_image_limits(l);
   set_descriptor_limits(l);
   set_memory_limits(l);
   set_graphics_limits(l);
+  if (is_universal) set_universal_limits(l);
   l.maxComputeSharedMemorySize = gpu.core.shared_bytes;
   l.maxComputeWorkGroupInvocations = exec::kMaxBlockThreads;
   std::fill_n(l.maxComputeWorkGroupCount, 3, kMaxGroups);
@@ -188,5 +200,5 @@ VkPhysicalDevice_T::VkPhysicalDevice_T(VkInstance_T& of)
   core.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
   glint::vulkan::set_text(core.deviceName, fmt::format("Glint {} (simulated)", preset));
   glint::vulkan::set_text(reinterpret_cast<char(&)[VK_UUID_SIZE]>(core.pipelineCacheUUID), "glint");
-  core.limits = glint::vulkan::limits_of(gpu);
+  core.limits = glint::vulkan::limits_of(gpu, instance.settings.is_universal);
 }

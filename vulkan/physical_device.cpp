@@ -32,17 +32,21 @@ VkResult EnumerateDeviceLayerProperties(PhysicalDevice&, uint32_t* count, VkLaye
   return VK_SUCCESS;
 }
 
-void GetPhysicalDeviceFeatures(PhysicalDevice&, VkPhysicalDeviceFeatures* out) {
+bool announces(const PhysicalDevice& device, const Feature& feature) {
+  return device.instance.settings.is_universal ? feature.with_graphics : feature.announced;
+}
+
+void GetPhysicalDeviceFeatures(PhysicalDevice& device, VkPhysicalDeviceFeatures* out) {
   auto* to = reinterpret_cast<VkBool32*>(out);
   for (const Feature& each : features_of(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2))
-    *to++ = each.announced;
+    *to++ = announces(device, each);
 }
 
 void GetPhysicalDeviceFeatures2(PhysicalDevice& device, VkPhysicalDeviceFeatures2* out) {
   GetPhysicalDeviceFeatures(device, &out->features);
-  for_each_output(out, [](VkBaseOutStructure* each) {
+  for_each_output(out, [&](VkBaseOutStructure* each) {
     auto* to = reinterpret_cast<VkBool32*>(each + 1);
-    for (const Feature& feature : features_of(each->sType)) *to++ = feature.announced;
+    for (const Feature& feature : features_of(each->sType)) *to++ = announces(device, feature);
   });
 }
 
@@ -55,10 +59,11 @@ void GetPhysicalDeviceProperties2(PhysicalDevice& device, VkPhysicalDeviceProper
   for_each_output(out, [&](VkBaseOutStructure* each) { fill_properties(each, device.properties); });
 }
 
-void GetPhysicalDeviceQueueFamilyProperties(PhysicalDevice&, uint32_t* count, VkQueueFamilyProperties* out) {
-  enumerate(1, count, out, [](auto& to, uint32_t) {
-    to = {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
-  });
+void GetPhysicalDeviceQueueFamilyProperties(PhysicalDevice& device, uint32_t* count,
+                                            VkQueueFamilyProperties* out) {
+  VkQueueFlags flags = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
+  if (device.instance.settings.is_universal) flags |= VK_QUEUE_GRAPHICS_BIT;
+  enumerate(1, count, out, [&](auto& to, uint32_t) { to = {flags, 1, 64, {1, 1, 1}}; });
 }
 
 void GetPhysicalDeviceQueueFamilyProperties2(PhysicalDevice& device, uint32_t* count,

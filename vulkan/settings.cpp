@@ -34,6 +34,12 @@ exec::OnFault on_fault_of(const std::string& text) {
   throw UserError(fmt::format("GLINT_ON_FAULT is '{}': it has to be 'warn' or 'stop'", text));
 }
 
+bool is_universal(const std::string& text) {
+  if (text != "compute" && text != "universal")
+    throw UserError(fmt::format("GLINT_VK_QUEUE is '{}': it has to be 'compute' or 'universal'", text));
+  return text == "universal";
+}
+
 }  // namespace
 
 Settings settings_of_environment() {
@@ -41,6 +47,8 @@ Settings settings_of_environment() {
   out.timing = LaunchSelection::parse(value_of("GLINT_TIMING"));
   if (const std::string text = value_of("GLINT_THREADS"); !text.empty()) out.threads = threads_of(text);
   if (const std::string text = value_of("GLINT_ON_FAULT"); !text.empty()) out.on_fault = on_fault_of(text);
+  if (const std::string text = value_of("GLINT_VK_QUEUE"); !text.empty())
+    out.is_universal = is_universal(text);
   return out;
 }
 

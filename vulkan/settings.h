@@ -13,6 +13,9 @@ struct Settings {
   LaunchSelection timing;                        // GLINT_TIMING: the launches that the timing machine runs
   uint32_t threads = 1;                          // GLINT_THREADS: threads of the host for a launch
   exec::OnFault on_fault = exec::OnFault::Warn;  // GLINT_ON_FAULT: "warn" or "stop"
+  // GLINT_VK_QUEUE: "compute" or "universal". With the latter the device pretends to have graphics, for
+  // programs that want a queue with graphics and then only compute.
+  bool is_universal = false;
 };
 
 // Returns the settings of the process. Throws UserError that names the variable and what it may be.

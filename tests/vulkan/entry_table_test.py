@@ -33,7 +33,7 @@ REGISTRY = """<registry>
     </require></extension>
 </extensions>
 </registry>"""
-BOTH = 'instance_extensions = []\ndevice_extensions = ["VK_KHR_thing", "VK_KHR_base"]\nfeatures = ["fresh"]\n'
+BOTH = 'instance_extensions = []\ndevice_extensions = ["VK_KHR_thing", "VK_KHR_base"]\nfeatures = ["fresh"]\nuniversal_features = []\n'
 
 
 class EntryTable(unittest.TestCase):
@@ -64,9 +64,13 @@ class EntryTable(unittest.TestCase):
 
     def test_features_know_whether_they_are_announced(self):
         _, texts = self.generate(BOTH)
-        self.assertIn('{"fresh", true}', texts["announced.cpp"])
-        self.assertIn('{"old", false}', texts["announced.cpp"])
+        self.assertIn('{"fresh", true, true}', texts["announced.cpp"])
+        self.assertIn('{"old", false, false}', texts["announced.cpp"])
         self.assertIn('{"VK_KHR_thing", 7}', texts["announced.cpp"])
+
+    def test_a_feature_of_graphics_is_announced_by_a_universal_queue_alone(self):
+        _, texts = self.generate(BOTH.replace("universal_features = []", 'universal_features = ["old"]'))
+        self.assertIn('{"old", false, true}', texts["announced.cpp"])
 
     def test_an_extension_without_the_one_that_it_needs_is_refused(self):
         result, _ = self.generate(BOTH.replace(', "VK_KHR_base"', ""))

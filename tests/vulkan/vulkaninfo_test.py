@@ -16,6 +16,21 @@ class VulkanInfo(VulkanTest):
         self.assertIn("deviceName        = Glint mobile (simulated)", result.stdout)
         self.assertIn("QUEUE_COMPUTE | QUEUE_TRANSFER", result.stdout)
 
+    def test_a_universal_queue_has_graphics_and_says_that_it_pretends(self):
+        result = self.run_on_glint("vulkaninfo", GLINT_VK_QUEUE="universal")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("QUEUE_GRAPHICS", result.stdout)
+        self.assertRegex(result.stdout, r"independentBlend\s+= true")
+        self.assertIn("the device announces graphics and has none of it", result.stderr)
+        without = self.run_on_glint("vulkaninfo").stdout
+        self.assertNotIn("QUEUE_GRAPHICS", without)
+        self.assertRegex(without, r"independentBlend\s+= false")
+
+    def test_an_unknown_queue_is_refused(self):
+        result = self.run_on_glint("vulkaninfo", GLINT_VK_QUEUE="all")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("GLINT_VK_QUEUE is 'all': it has to be 'compute' or 'universal'", result.stderr)
+
     def test_the_library_shows_the_loader_s_functions_and_no_others(self):
         library = json.loads(MANIFEST.read_text())["ICD"]["library_path"]
         listed = self.run_on_glint("nm", "-D", "--defined-only", library)
