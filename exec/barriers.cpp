@@ -36,18 +36,28 @@ bool is_uniform(const uint32_t* row, LaneMask lanes) {
 
 }  // namespace
 
+// A fault of a part of a warp. Where faults are let pass, the part arrives for the whole warp.
+bool Barriers::come_divided(const WarpContext& warp, const isa::OpRow& row) {
+  const LaneMask exec = warp.regs.exec;
+  bool goes_on = true;
+  for_each_lane(exec, [&](int lane) {
+    goes_on = goes_on && faults_.let_pass(warp, lane, FaultKind::Barrier, [&] {
+      return fmt::format("{} of the {} lanes of the warp come to {}, but all have to come together",
+                         num_lanes(exec), num_lanes(warp.simt.live()), row.name);
+    });
+  });
+  return goes_on;
+}
+
 // Model: only whole warps arrive. PTX leaves undefined what a warp does that is divided at a bar.sync
-// (hardware from Volta on counts its threads one by one). Here a divided warp is a fault.
+// (hardware from Volta on counts its threads one by one). Here a divided warp is a fault, and where faults
+// are let pass, each part of the warp that comes counts as the warp, as on hardware before Volta.
 bool Barriers::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
-  const LaneMask exec = warp.regs.exec, live = warp.simt.live();
+  const LaneMask exec = warp.regs.exec;
   const auto kind = BarrierKind(row.detail);
   if (exec == 0) return ++warp.simt.pc, true;
   const int lane = std::countr_zero(exec);
-  if (exec != live)
-    return faults_.fail(
-        warp, lane,
-        fmt::format("{} of the {} lanes of the warp come to {}, but all have to come together",
-                    num_lanes(exec), num_lanes(live), row.name));
+  if (exec != warp.simt.live() && !come_divided(warp, row)) return false;
   const BarrierSlots slots = slots_of(kind);
   const uint32_t* const barriers = warp.regs.read(inst.operand[slots.barrier]);
   const uint32_t* const counts = warp.regs.read(inst.operand[slots.threads]);

@@ -21,6 +21,7 @@ class Barriers {
   bool end_warp(WarpContext& warp);
 
  private:
+  bool come_divided(const WarpContext& warp, const isa::OpRow& row);
   bool check(WarpContext& warp, uint32_t barrier, uint32_t threads);
   void open(Block& block, uint32_t barrier);
   bool fail_stuck(const Block& block);

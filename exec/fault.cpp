@@ -11,7 +11,8 @@
 namespace glint::exec {
 
 std::string_view name_of(FaultKind kind) {
-  constexpr std::string_view kNames[] = {"out_of_bounds", "misaligned", "image", "record", "structure"};
+  constexpr std::string_view kNames[] = {"out_of_bounds", "misaligned", "image",
+                                         "record",        "structure",  "barrier"};
   static_assert(std::size(kNames) == size_t(FaultKind::Count));
   return kNames[size_t(kind)];
 }

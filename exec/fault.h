@@ -32,6 +32,7 @@ enum class FaultKind : uint8_t {
   Image,      // the image does not exist or is of another kind, or the texel lies outside of it
   Record,     // the record lies outside of the binding table
   Structure,  // the address holds no acceleration structure, or an overwritten one
+  Barrier,    // only a part of a warp comes to a barrier
   Count
 };
 std::string_view name_of(FaultKind kind);

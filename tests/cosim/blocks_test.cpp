@@ -113,6 +113,35 @@ TEST_CASE("blocks take the same cycles whether idle time is skipped or not") {
   }
 }
 
+TEST_CASE("parts of warps that come to a barrier one after another leave the same memory when let pass") {
+  const std::string text = R"(
+    mov.b32 %r4, %tid.x;
+    and.b32 %r5, %r4, 31;
+    setp.ge.u32 %p1, %r5, 16;
+    ssy DONE;
+    @%p1 bra OTHER;
+    bar.sync 0, 0;
+    bra DONE;
+OTHER:
+    bar.sync 0, 0;
+DONE:
+    join;
+    ld.param.b64 %rd2, [0];
+    mad.wide.u32 %rd2, %r4, 4, %rd2;
+    st.global.b32 [%rd2], %r4;
+    exit;
+)";
+  exec::TextLaunch functional(text, {.block = {96, 1, 1}}), timed(text, {.block = {96, 1, 1}});
+  functional.world.on_fault = timed.world.on_fault = exec::OnFault::Warn;
+  functional.run();
+  run_timing(timed);
+
+  for (uint32_t i = 0; i < 96; ++i) {
+    CHECK(functional.word(i) == i);
+    CHECK(timed.word(i) == i);
+  }
+}
+
 TEST_CASE("an atomic costs a trip to the L2, and a red does not") {
   const auto cycles = [](const std::string& op) {
     std::string text = "    ld.param.b64 %rd2, [0];\n    mov.b32 %r4, 1;\n";

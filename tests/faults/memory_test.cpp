@@ -185,6 +185,15 @@ TEST_CASE("a ray query in a structure of an unknown node format says so, and fin
        [](uint32_t) { return 10; }});
 }
 
+TEST_CASE("a part of a warp that comes to a barrier counts as the warp when let pass") {
+  check_memory({"if ((i & 1u) == 1u) { data[i % 40u] = 7u; barrier(); } got = i;",
+                "16 of the 32 lanes of the warp come to bar.sync, but all have to come together",
+                FaultKind::Barrier,
+                32,
+                {1, 0, 0},
+                [](uint32_t lane) { return lane; }});
+}
+
 TEST_CASE("a program without end stops also when faults are let pass, after those that were") {
   for (const bool timing : {false, true}) {
     const std::string message = fault_of("got = data[i]; while (data[0] != 0u) data[1] += 1u;",
