@@ -9,7 +9,6 @@
 #include "vulkan/debug_utils.h"
 
 namespace glint::vulkan {
-
 namespace {
 
 Settings settings() {

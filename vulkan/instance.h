@@ -15,8 +15,7 @@ struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
   explicit VkPhysicalDevice_T(VkInstance_T& of);
 
   VkInstance_T& instance;
-  glint::pipeline::GpuParams gpu;
-  std::string preset = "mobile";
+  const glint::pipeline::GpuParams& gpu;
   VkPhysicalDeviceProperties core{};           // with the limits
   glint::vulkan::DeviceProperties properties;  // all others
 };

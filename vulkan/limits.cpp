@@ -192,13 +192,13 @@ DeviceProperties properties_of(const pipeline::GpuParams&, const std::string& pr
 }  // namespace glint::vulkan
 
 VkPhysicalDevice_T::VkPhysicalDevice_T(VkInstance_T& of)
-    : instance(of), properties(glint::vulkan::properties_of(gpu, preset)) {
+    : instance(of), gpu(of.settings.gpu), properties(glint::vulkan::properties_of(gpu, of.settings.preset)) {
   core.apiVersion = VK_MAKE_API_VERSION(0, 1, 3, VK_HEADER_VERSION);
   core.driverVersion = VK_MAKE_API_VERSION(0, 0, 1, 0);
   // Choice: 0 is nobody's number, so no client tunes itself for another vendor's GPU.
   core.vendorID = core.deviceID = 0;
   core.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-  glint::vulkan::set_text(core.deviceName, fmt::format("Glint {} (simulated)", preset));
+  glint::vulkan::set_text(core.deviceName, fmt::format("Glint {} (simulated)", of.settings.preset));
   glint::vulkan::set_text(reinterpret_cast<char(&)[VK_UUID_SIZE]>(core.pipelineCacheUUID), "glint");
   core.limits = glint::vulkan::limits_of(gpu, instance.settings.is_universal);
 }

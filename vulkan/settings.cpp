@@ -4,9 +4,15 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <dlfcn.h>
+#include <filesystem>
 #include <fmt/format.h>
+#include <iterator>
+#include <sstream>
+#include <vector>
 
 #include "base/diagnostics.h"
+#include "setup/config.h"
 
 namespace glint::vulkan {
 namespace {
@@ -40,10 +46,36 @@ bool is_universal(const std::string& text) {
   return text == "universal";
 }
 
+// Returns the words of a text.
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+// Returns what Glint was installed with, which lies beside this library.
+setup::Resources resources() {
+  Dl_info library{};
+  if (dladdr(reinterpret_cast<const void*>(&settings_of_environment), &library) == 0 || !library.dli_fname)
+    throw UserError("the driver does not know where it lies");
+  return setup::Resources::find(library.dli_fname);
+}
+
+void read_machine(Settings& settings) {
+  const std::string name = value_of("GLINT_CONFIG");
+  try {
+    const std::string preset = name.empty() ? "mobile" : name;
+    settings.gpu = setup::read_preset(resources(), preset, words_of(value_of("GLINT_SET")));
+    settings.preset = std::filesystem::path(preset).stem().string();
+  } catch (const UserError& error) {
+    throw UserError(fmt::format("GLINT_CONFIG and GLINT_SET make no machine:\n{}", error.what()));
+  }
+}
+
 }  // namespace
 
 Settings settings_of_environment() {
   Settings out;
+  read_machine(out);
   out.timing = LaunchSelection::parse(value_of("GLINT_TIMING"));
   if (const std::string text = value_of("GLINT_THREADS"); !text.empty()) out.threads = threads_of(text);
   if (const std::string text = value_of("GLINT_ON_FAULT"); !text.empty()) out.on_fault = on_fault_of(text);

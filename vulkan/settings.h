@@ -5,11 +5,14 @@
 #include <string>
 
 #include "exec/fault.h"
+#include "pipeline/params.h"
 #include "vulkan/launch_selection.h"
 
 namespace glint::vulkan {
 
 struct Settings {
+  std::string preset;                            // GLINT_CONFIG: a preset ("mobile") or a file
+  pipeline::GpuParams gpu;                       // the preset, with the settings of GLINT_SET on top
   LaunchSelection timing;                        // GLINT_TIMING: the launches that the timing machine runs
   uint32_t threads = 1;                          // GLINT_THREADS: threads of the host for a launch
   exec::OnFault on_fault = exec::OnFault::Warn;  // GLINT_ON_FAULT: "warn" or "stop"

@@ -27,6 +27,19 @@ class Timing(VulkanTest):
             with self.subTest(choice):
                 self.assertEqual(self.cycles(GLINT_TIMING=choice), {number: every[number] for number in taken})
 
+    def test_the_user_chooses_the_machine(self):
+        mobile = self.cycles(GLINT_TIMING="all")
+        self.assertEqual(self.cycles(GLINT_TIMING="all", GLINT_CONFIG="mobile"), mobile)
+        desktop = self.cycles(GLINT_TIMING="all", GLINT_CONFIG="desktop")
+        self.assertEqual(sorted(desktop), sorted(mobile))
+        self.assertNotEqual(desktop, mobile)
+        early = self.cycles(GLINT_TIMING="all", GLINT_SET="core.launch_latency=1000  core.ends_when_written=false")
+        (self.folder / "late.toml").write_text('base = "mobile"\n[core]\nlaunch_latency = 6000\n')
+        late = self.cycles(GLINT_TIMING="all", GLINT_CONFIG="late.toml")
+        for number, cycles in mobile.items():  # Blocks begin at the end of a turn of 49 cycles.
+            self.assertAlmostEqual(early[number], cycles - 4000, delta=49)
+            self.assertAlmostEqual(late[number], cycles + 1000, delta=49)
+
     def test_threads_of_the_host_change_no_cycle(self):
         self.assertEqual(self.cycles(GLINT_TIMING="all", GLINT_THREADS="2"), self.cycles(GLINT_TIMING="all"))
 
@@ -35,6 +48,11 @@ class Timing(VulkanTest):
             result = self.run_on_glint(CLIENT, "[three_launches]", **{name: value})
             self.assertNotEqual(result.returncode, 0)
             self.assertRegex(result.stderr, f"{name}.*'{value}'")
+        for name, value in (("GLINT_CONFIG", "mobil"), ("GLINT_SET", "core.warp=7")):
+            result = self.run_on_glint(CLIENT, "[three_launches]", **{name: value})
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn("GLINT_CONFIG and GLINT_SET make no machine", result.stderr)
+            self.assertIn("did you mean", result.stderr)
 
 
 vulkan_case.main()
