@@ -125,8 +125,8 @@ pairs = true
 [[arm]]
 name = "{name}"
 {against}set = [{keys}]
-""" for name, against, keys in (("base", "", ""), ("prefetch", 'against = "base"\n', '"rt.prefetch=stack_trend"'), ("helpers", 'against = "base"\n', '"rt.mapping=cooperative"'),
-                                ("trail", 'against = "base"\n', '"rt.stack=restart_trail"'), ("other", 'against = "base"\n', '"rt.prefetch=none"')))
+""" for name, against, keys in (("base", "", ""), ("prefetch", 'against = "base"\n', '"rt.prefetch=stack_trend", "rt.warps=4"'), ("helpers", 'against = "base"\n', '"rt.mapping=cooperative"'),
+                                ("trail", 'against = "base"\n', '"rt.stack=restart_trail", "rt.warps=4"'), ("other", 'against = "base"\n', '"rt.prefetch=none"')))
 
     def test_each_two_arms_run_together_and_refused_pairs_say_why(self):
         text = self.lab(0, self.write("mine.toml", self.TEXT)).stdout

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "base/diagnostics.h"
@@ -20,12 +19,14 @@ namespace {
 
 constexpr char kJoint = '+';  // between the names of two arms; no arm's own name has it
 
-// Returns the keys that the arm's settings change.
-std::set<std::string> keys_of(const setup::Resources& resources, const LabArm& arm) {
-  std::set<std::string> out;
+// Returns what the arm's settings give to each key that they change.
+std::map<std::string, std::string> values_of(const setup::Resources& resources, const LabArm& arm) {
+  std::map<std::string, std::string> out;
   for (const std::string& setting :
-       setup::without_oracles(resources, setup::with_oracles(arm.oracles, arm.settings)))
-    out.insert(setting.substr(0, setting.find('=')));
+       setup::without_oracles(resources, setup::with_oracles(arm.oracles, arm.settings))) {
+    const size_t equals = setting.find('=');
+    out[setting.substr(0, equals)] = setting.substr(equals + 1);
+  }
   return out;
 }
 
@@ -60,9 +61,10 @@ LabArm both(const LabArm& a, const LabArm& b) {
 
 std::string why_not(const setup::Resources& resources, const Experiment& experiment, const LabArm& a,
                     const LabArm& b) {
-  const std::set<std::string> keys = keys_of(resources, a);
-  for (const std::string& key : keys_of(resources, b))
-    if (keys.contains(key)) return fmt::format("both change {}", key);
+  const std::map<std::string, std::string> values = values_of(resources, a);
+  for (const auto& [key, value] : values_of(resources, b))
+    if (const auto other = values.find(key); other != values.end() && other->second != value)
+      return fmt::format("both change {}", key);
   return why_refused(resources, experiment, both(a, b));
 }
 
