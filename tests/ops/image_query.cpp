@@ -18,7 +18,9 @@ uint32_t channel_type(const Format& format) {
   const int bits = format.channels.front().bits;
   const bool is_plain = std::all_of(format.channels.begin(), format.channels.end(),
                                     [&](const auto& channel) { return channel.bits == bits; });
-  if (!is_plain) return format.name == "rgb10a2_unorm" ? 0x10e0 : 0;  // CL_UNORM_INT_101010_2
+  if (format.name == "rgb10a2_unorm") return 0x10e0;        // CL_UNORM_INT_101010_2
+  if (format.name == "r5g6b5_unorm_pack16") return 0x10d4;  // CL_UNORM_SHORT_565
+  if (!is_plain || bits < 8) return 0;
   const uint32_t width = bits == 8 ? 0 : bits == 16 ? 1 : 2;
   switch (format.kind) {
     case Kind::Snorm:
@@ -40,6 +42,11 @@ uint32_t channel_order(const Format& format) {
   std::string letters;
   for (const Format::Channel& channel : format.channels)
     if (channel.letter != 'e') letters += channel.letter;
+  // A packed format has the order of its colours, wherever their bits lie.
+  if (format.name.find("_pack") != std::string_view::npos)
+    std::sort(letters.begin(), letters.end(), [](char a, char b) {
+      return std::string_view("rgba").find(a) < std::string_view("rgba").find(b);
+    });
   const bool is_srgb = format.kind == Kind::Srgb;
   if (letters == "r") return 0x10b0;
   if (letters == "rg") return 0x10b2;

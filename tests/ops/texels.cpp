@@ -129,7 +129,8 @@ Format format_of(std::string_view name) {
   Format out;
   out.name = name;
   const std::string_view channels = name.substr(0, name.find('_'));
-  out.kind = kind_of(name.substr(name.find('_') + 1));
+  const std::string_view after = name.substr(name.find('_') + 1);
+  out.kind = kind_of(after.substr(0, after.find('_')));
   // Letters stand before their number of bits: "rgb10a2" has three channels of 10 bits and one of 2.
   size_t unnumbered = 0;
   for (size_t at = 0; at < channels.size();) {
@@ -142,6 +143,8 @@ Format format_of(std::string_view name) {
       bits = 10 * bits + (channels[at++] - '0');
     for (; unnumbered < out.channels.size(); ++unnumbered) out.channels[unnumbered].bits = bits;
   }
+  // Vulkan names the channels of packed formats from the highest bit on.
+  if (after.find("_pack") != std::string_view::npos) std::reverse(out.channels.begin(), out.channels.end());
   return out;
 }
 
