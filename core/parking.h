@@ -29,13 +29,11 @@ struct ParkingLotParams {
 // Contract (tests/contract/parking_test.cpp):
 //  - is_used() never changes. Without it no warp gives up a place, and a core has no slots beyond its places.
 //  - gives_up() is asked when the RT unit has taken a warp's rays. When a warp wants to return and no place
-//  is
-//    free, it is asked once more for the warp with a place whose rays began last. It is a function of the
+//    is free, it is asked once more, for the warp with a place whose rays began last. It is a function of the
 //    views so far and of the policy's own state: the same views give the same answers.
-//  - A warp that gives up its place leaves when its accesses have been answered, unless its rays are back
-//  before.
-//    It returns when its rays are back and a place is free; warps return in the order of their rays, before
-//    new blocks begin.
+//  - A warp that gives up its place leaves when its accesses have been answered, unless its rays are back by
+//    then. It returns when its rays are back and a place is free. Warps return in the order of their rays,
+//    before new blocks begin.
 //  - A policy changes cycles, and no result.
 class Parking {
  public:
