@@ -82,18 +82,16 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
   if (binding == set->second.set->layout.bindings.end() || binding->second.count == 0) return;
   const Place place{set->second, binding->second};
   const pipeline::BindingPlace number{use.set, use.binding};
-  switch (place.layout.type) {
-    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
-    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
-    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
-    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
+  switch (kind_of(place.layout.type)) {
+    case DescriptorKind::Buffer:
       return bind_buffers(device, builder, place, number);
-    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
+    case DescriptorKind::InlineBlock:
       return builder.bind_buffers(number,
                                   {{set->second.set->inline_blocks.at(use.binding), place.layout.count}});
-    case VK_DESCRIPTOR_TYPE_SAMPLER:
+    case DescriptorKind::Sampler:
       return bind_samplers(builder, place, number);
-    default:
+    case DescriptorKind::TexelBuffer:
+    case DescriptorKind::Image:
       return bind_images(device, builder, place, number);
   }
 }

@@ -10,19 +10,7 @@
 namespace glint::vulkan {
 namespace {
 
-constexpr VkDeviceSize kAlignment = mem::AddressSpace::kWindowAlignment;
 constexpr size_t kManyParts = 1024;  // The address space has 65,536 places for buffers, images and parts.
-
-VkMemoryRequirements requirements_of(VkDeviceSize bytes) {
-  return {(bytes + kAlignment - 1) / kAlignment * kAlignment, kAlignment, kAllMemoryTypes};
-}
-
-void answer(VkMemoryRequirements2* out, VkDeviceSize bytes) {
-  out->memoryRequirements = requirements_of(bytes);
-  if (auto* dedicated =
-          find_in_output<VkMemoryDedicatedRequirements>(out, VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS))
-    dedicated->prefersDedicatedAllocation = dedicated->requiresDedicatedAllocation = VK_FALSE;
-}
 
 }  // namespace
 
@@ -84,11 +72,7 @@ void DestroyBuffer(Device& device, VkBuffer buffer) {
 }
 
 VkResult BindBufferMemory(Device& device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset) {
-  if (offset % kAlignment || offset > memory->bytes || buffer->bytes > memory->bytes - offset)
-    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
-                  fmt::format("{} ({} bytes) does not fit at byte {} of {} bytes of memory", buffer->name,
-                              buffer->bytes, offset, memory->bytes));
-  buffer->address = device.memory.open_window(buffer->name, memory->backing, offset, buffer->bytes);
+  buffer->address = bind_window(device, buffer->name, buffer->bytes, memory, offset);
   buffer->memory = memory, buffer->offset = offset;
   return VK_SUCCESS;
 }
@@ -104,11 +88,11 @@ void GetBufferMemoryRequirements(Device&, VkBuffer buffer, VkMemoryRequirements*
 }
 void GetBufferMemoryRequirements2(Device&, const VkBufferMemoryRequirementsInfo2* info,
                                   VkMemoryRequirements2* out) {
-  answer(out, info->buffer->bytes);
+  answer_requirements(out, info->buffer->bytes);
 }
 void GetDeviceBufferMemoryRequirements(Device&, const VkDeviceBufferMemoryRequirements* info,
                                        VkMemoryRequirements2* out) {
-  answer(out, info->pCreateInfo->size);
+  answer_requirements(out, info->pCreateInfo->size);
 }
 
 VkDeviceAddress GetBufferDeviceAddress(Device&, const VkBufferDeviceAddressInfo* info) {

@@ -11,6 +11,13 @@ void VkCommandBuffer_T::reset() {
   bound = {};
 }
 
+void VkCommandBuffer_T::append_to(glint::vulkan::CommandList& list) const {
+  if (state != State::Executable)
+    throw glint::vulkan::Refusal(
+        "a command buffer that is submitted or executed was not recorded to its end");
+  list.insert(list.end(), commands.begin(), commands.end());
+}
+
 namespace glint::vulkan {
 
 VkResult CreateCommandPool(Device&, const VkCommandPoolCreateInfo*, VkCommandPool* out) {
@@ -60,12 +67,7 @@ VkResult ResetCommandBuffer(CommandBuffer& commands, VkCommandBufferResetFlags) 
 }
 
 void CmdExecuteCommands(CommandBuffer& commands, uint32_t count, const VkCommandBuffer* secondaries) {
-  for (uint32_t i = 0; i < count; ++i) {
-    if (secondaries[i]->state != CommandBuffer::State::Executable)
-      throw Refusal("a secondary command buffer was not recorded to its end");
-    commands.commands.insert(commands.commands.end(), secondaries[i]->commands.begin(),
-                             secondaries[i]->commands.end());
-  }
+  for (uint32_t i = 0; i < count; ++i) secondaries[i]->append_to(commands.commands);
   commands.bound = {};  // Vulkan says that nothing stays bound.
 }
 

@@ -50,6 +50,8 @@ struct VkCommandBuffer_T : glint::vulkan::Dispatchable {
     commands.push_back(std::make_shared<const glint::vulkan::Command>(std::move(command)));
   }
   void reset();
+  // Appends all commands of this buffer to a list. Throws Refusal when it was not recorded to its end.
+  void append_to(glint::vulkan::CommandList& list) const;
 
   VkDevice_T& device;
   VkCommandPool pool;

@@ -17,9 +17,7 @@ void add_binding(DescriptorSetLayout& layout, const VkDescriptorSetLayoutBinding
                   fmt::format("binding {} is past the last one, {}", from.binding, isa::kMaxBindings - 1));
   LayoutBinding& to = layout.bindings[from.binding];
   to.type = from.descriptorType, to.count = from.descriptorCount, to.is_variable = is_variable;
-  const bool has_samplers =
-      to.type == VK_DESCRIPTOR_TYPE_SAMPLER || to.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  if (has_samplers && from.pImmutableSamplers)
+  if (has_sampler(to.type) && from.pImmutableSamplers)
     to.immutable.assign(from.pImmutableSamplers, from.pImmutableSamplers + from.descriptorCount);
 }
 

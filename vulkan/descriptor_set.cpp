@@ -47,27 +47,34 @@ class Cursor {
 
 void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
   Descriptor& to = cursor.next();
-  switch (type) {
-    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
-    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
-    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
-    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC: {
-      const auto& from = *static_cast<const VkDescriptorBufferInfo*>(info);
-      to.buffer = from.buffer, to.offset = from.offset, to.range = from.range;
-      return;
-    }
-    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
-    case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
-      to.texels = *static_cast<const VkBufferView*>(info);
-      return;
-    default:
-      break;
+  const DescriptorKind kind = kind_of(type);
+  if (kind == DescriptorKind::Buffer) {
+    const auto& from = *static_cast<const VkDescriptorBufferInfo*>(info);
+    to.buffer = from.buffer, to.offset = from.offset, to.range = from.range;
+    return;
+  }
+  if (kind == DescriptorKind::TexelBuffer) {
+    to.texels = *static_cast<const VkBufferView*>(info);
+    return;
   }
   const auto& from = *static_cast<const VkDescriptorImageInfo*>(info);
-  if (type != VK_DESCRIPTOR_TYPE_SAMPLER) to.view = from.imageView;
-  const bool has_sampler =
-      type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  if (has_sampler && !cursor.has_immutable_sampler()) to.sampler = from.sampler;
+  if (kind == DescriptorKind::Image) to.view = from.imageView;
+  if (has_sampler(type) && !cursor.has_immutable_sampler()) to.sampler = from.sampler;
+}
+
+// Returns where the application keeps what it writes to a descriptor.
+const void* info_of(const VkWriteDescriptorSet& from, uint32_t element) {
+  switch (kind_of(from.descriptorType)) {
+    case DescriptorKind::Buffer:
+      return from.pBufferInfo + element;
+    case DescriptorKind::TexelBuffer:
+      return from.pTexelBufferView + element;
+    case DescriptorKind::InlineBlock:
+    case DescriptorKind::Image:
+    case DescriptorKind::Sampler:
+      break;
+  }
+  return from.pImageInfo + element;
 }
 
 // Writes bytes of an inline uniform block.
@@ -96,19 +103,33 @@ void copy(Device& device, const VkCopyDescriptorSet& info) {
   }
 }
 
-bool is_buffer(VkDescriptorType type) {
-  return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
-         type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC ||
-         type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
-}
-bool is_texel_buffer(VkDescriptorType type) {
-  return type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-}
-
 }  // namespace
 
+DescriptorKind kind_of(VkDescriptorType type) {
+  switch (type) {
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+    case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
+    case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
+      return DescriptorKind::Buffer;
+    case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+    case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+      return DescriptorKind::TexelBuffer;
+    case VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK:
+      return DescriptorKind::InlineBlock;
+    case VK_DESCRIPTOR_TYPE_SAMPLER:
+      return DescriptorKind::Sampler;
+    default:
+      return DescriptorKind::Image;
+  }
+}
+
+bool has_sampler(VkDescriptorType type) {
+  return type == VK_DESCRIPTOR_TYPE_SAMPLER || type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+}
+
 void write(Device& device, DescriptorSet& set, const VkWriteDescriptorSet& from) {
-  if (from.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) {
+  if (kind_of(from.descriptorType) == DescriptorKind::InlineBlock) {
     const auto* block = find_in_chain<VkWriteDescriptorSetInlineUniformBlock>(
         &from, VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_INLINE_UNIFORM_BLOCK);
     if (block)
@@ -116,19 +137,14 @@ void write(Device& device, DescriptorSet& set, const VkWriteDescriptorSet& from)
     return;
   }
   Cursor cursor(set, from.dstBinding, from.dstArrayElement);
-  for (uint32_t i = 0; i < from.descriptorCount; ++i) {
-    const void* const info = is_buffer(from.descriptorType) ? static_cast<const void*>(from.pBufferInfo + i)
-                             : is_texel_buffer(from.descriptorType)
-                                 ? from.pTexelBufferView + i
-                                 : static_cast<const void*>(from.pImageInfo + i);
-    write_one(cursor, from.descriptorType, info);
-  }
+  for (uint32_t i = 0; i < from.descriptorCount; ++i)
+    write_one(cursor, from.descriptorType, info_of(from, i));
 }
 
 void write(Device& device, DescriptorSet& set, const VkDescriptorUpdateTemplate_T& with, const void* data) {
   for (const VkDescriptorUpdateTemplateEntry& entry : with.entries) {
     const auto* from = static_cast<const std::byte*>(data) + entry.offset;
-    if (entry.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) {
+    if (kind_of(entry.descriptorType) == DescriptorKind::InlineBlock) {
       write_inline(device, set, entry.dstBinding, entry.dstArrayElement, entry.descriptorCount, from);
       continue;
     }

@@ -21,6 +21,12 @@ struct Descriptor {
   VkBufferView texels = nullptr;
 };
 
+// Says what descriptors of a type refer to.
+enum class DescriptorKind : uint8_t { Buffer, InlineBlock, TexelBuffer, Image, Sampler };
+DescriptorKind kind_of(VkDescriptorType type);
+// Returns whether a descriptor of the type has a sampler, alone or with its image.
+bool has_sampler(VkDescriptorType type);
+
 struct LayoutBinding {
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_SAMPLER;
   uint32_t count = 0;          // descriptors; of an inline uniform block: bytes
@@ -34,7 +40,7 @@ struct LayoutBinding {
            type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
   }
   bool operator==(const LayoutBinding&) const = default;
-  bool is_inline() const { return type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK; }
+  bool is_inline() const { return kind_of(type) == DescriptorKind::InlineBlock; }
 };
 
 }  // namespace glint::vulkan

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 #include <string_view>
 
 #include "vulkan/announced.h"
@@ -46,6 +47,11 @@ VkImageUsageFlags usage_of(VkFormatFeatureFlags2 features) {
 
 std::optional<exec::TexelFormat> format_of(VkFormat format) {
   return exec::format_of_vulkan(name_of(format));
+}
+
+exec::TexelFormat texel_format_of(VkFormat format) {
+  if (const auto out = format_of(format)) return *out;
+  throw Refusal(VK_ERROR_FORMAT_NOT_SUPPORTED, fmt::format("format {} is not there", int(format)));
 }
 
 VkFormatFeatureFlags2 image_features_of(VkFormat format) {

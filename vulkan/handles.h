@@ -24,10 +24,4 @@ struct Dispatchable {
   VK_LOADER_DATA loader_{};
 };
 
-// Returns a number of the application's as the handle that it was made of, for messages and private data.
-template <class Handle>
-uint64_t number_of(Handle handle) {
-  return reinterpret_cast<uint64_t>(handle);
-}
-
 }  // namespace glint::vulkan

@@ -12,31 +12,14 @@
 namespace glint::vulkan {
 namespace {
 
-constexpr VkDeviceSize kImageAlignment = mem::AddressSpace::kWindowAlignment;
-
 exec::ImageView whole_of(const VkImageCreateInfo& info) {
-  const auto format = format_of(info.format);
-  if (!format)
-    throw Refusal(VK_ERROR_FORMAT_NOT_SUPPORTED, fmt::format("format {} is not there", int(info.format)));
+  exec::ImageView out;
+  out.format = texel_format_of(info.format);
   if (info.samples != VK_SAMPLE_COUNT_1_BIT || (info.flags & VK_IMAGE_CREATE_SPARSE_BINDING_BIT))
     throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse images and images of several samples are not there");
-  exec::ImageView out;
-  out.format = *format;
   out.width = info.extent.width, out.height = info.extent.height, out.depth = info.extent.depth;
   out.levels = info.mipLevels, out.layers = info.arrayLayers;
   return out;
-}
-
-VkMemoryRequirements requirements_of(const exec::ImageView& whole) {
-  return {(whole.bytes() + kImageAlignment - 1) / kImageAlignment * kImageAlignment, kImageAlignment,
-          kAllMemoryTypes};
-}
-
-void answer(VkMemoryRequirements2* out, const exec::ImageView& whole) {
-  out->memoryRequirements = requirements_of(whole);
-  if (auto* dedicated =
-          find_in_output<VkMemoryDedicatedRequirements>(out, VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS))
-    dedicated->prefersDedicatedAllocation = dedicated->requiresDedicatedAllocation = VK_FALSE;
 }
 
 }  // namespace
@@ -79,12 +62,7 @@ void DestroyImage(Device& device, VkImage image) {
 }
 
 VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset) {
-  const VkDeviceSize bytes = image->whole.bytes();
-  if (offset % kImageAlignment || offset > memory->bytes || bytes > memory->bytes - offset)
-    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
-                  fmt::format("{} ({} bytes) does not fit at byte {} of {} bytes of memory",
-                              image->whole.name, bytes, offset, memory->bytes));
-  image->whole.base = device.memory.open_window(image->whole.name, memory->backing, offset, bytes);
+  image->whole.base = bind_window(device, image->whole.name, image->whole.bytes(), memory, offset);
   image->memory = memory, image->offset = offset;
   return VK_SUCCESS;
 }
@@ -95,15 +73,15 @@ VkResult BindImageMemory2(Device& device, uint32_t count, const VkBindImageMemor
 }
 
 void GetImageMemoryRequirements(Device&, VkImage image, VkMemoryRequirements* out) {
-  *out = requirements_of(image->whole);
+  *out = requirements_of(image->whole.bytes());
 }
 void GetImageMemoryRequirements2(Device&, const VkImageMemoryRequirementsInfo2* info,
                                  VkMemoryRequirements2* out) {
-  answer(out, info->image->whole);
+  answer_requirements(out, info->image->whole.bytes());
 }
 void GetDeviceImageMemoryRequirements(Device&, const VkDeviceImageMemoryRequirements* info,
                                       VkMemoryRequirements2* out) {
-  answer(out, whole_of(*info->pCreateInfo));
+  answer_requirements(out, whole_of(*info->pCreateInfo).bytes());
 }
 
 // Nothing is sparse.

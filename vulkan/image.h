@@ -37,6 +37,8 @@ using Image = VkImage_T;
 
 // Returns the format that the simulated GPU has for a format of Vulkan, or nothing.
 std::optional<exec::TexelFormat> format_of(VkFormat format);
+// Returns it, or throws Refusal that names the format.
+exec::TexelFormat texel_format_of(VkFormat format);
 // Returns what the device can do with images of a format, and with texels in buffers.
 VkFormatFeatureFlags2 image_features_of(VkFormat format);
 VkFormatFeatureFlags2 buffer_features_of(VkFormat format);

@@ -11,6 +11,8 @@
 namespace glint::vulkan {
 namespace {
 
+constexpr VkDeviceSize kAlignment = mem::AddressSpace::kWindowAlignment;
+
 void import_or_allocate(Device& device, DeviceMemory& memory, const VkMemoryAllocateInfo* info) {
   if (const auto* host = find_in_chain<VkImportMemoryHostPointerInfoEXT>(
           info, VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT);
@@ -34,6 +36,26 @@ void import_or_allocate(Device& device, DeviceMemory& memory, const VkMemoryAllo
 }
 
 }  // namespace
+
+VkMemoryRequirements requirements_of(VkDeviceSize bytes) {
+  return {(bytes + kAlignment - 1) / kAlignment * kAlignment, kAlignment, kAllMemoryTypes};
+}
+
+void answer_requirements(VkMemoryRequirements2* out, VkDeviceSize bytes) {
+  out->memoryRequirements = requirements_of(bytes);
+  if (auto* dedicated =
+          find_in_output<VkMemoryDedicatedRequirements>(out, VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS))
+    dedicated->prefersDedicatedAllocation = dedicated->requiresDedicatedAllocation = VK_FALSE;
+}
+
+Address bind_window(Device& device, const std::string& name, VkDeviceSize bytes, VkDeviceMemory memory,
+                    VkDeviceSize offset) {
+  if (offset % kAlignment || offset > memory->bytes || bytes > memory->bytes - offset)
+    throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                  fmt::format("{} ({} bytes) does not fit at byte {} of {} bytes of memory", name, bytes,
+                              offset, memory->bytes));
+  return device.memory.open_window(name, memory->backing, offset, bytes);
+}
 
 VkResult AllocateMemory(Device& device, const VkMemoryAllocateInfo* info, VkDeviceMemory* out) {
   auto made = std::make_unique<DeviceMemory>();

@@ -40,6 +40,16 @@ struct HostRange {
   uint64_t bytes = 0;
 };
 
+// What buffers and images ask of memory: whole windows of it, of any type.
+VkMemoryRequirements requirements_of(VkDeviceSize bytes);
+// Answers the same with all structures that hang on `out`.
+void answer_requirements(VkMemoryRequirements2* out, VkDeviceSize bytes);
+
+// Opens a window of `bytes` at `offset` of the memory for a buffer or an image. Throws Refusal when it does
+// not fit there.
+Address bind_window(Device& device, const std::string& name, VkDeviceSize bytes, VkDeviceMemory memory,
+                    VkDeviceSize offset);
+
 // Returns the bytes of `range` from `offset` on; VK_WHOLE_SIZE stands for all that follow. Throws Refusal
 // when the buffer has no memory or the range leaves it.
 HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range);

@@ -105,7 +105,7 @@ VkResult GetPhysicalDeviceToolProperties(PhysicalDevice&, uint32_t* count,
                                          VkPhysicalDeviceToolProperties* out) {
   return enumerate(1, count, out, [](auto& to, uint32_t) {
     std::strcpy(to.name, "Glint");
-    std::strcpy(to.version, "0.1.0");
+    std::strcpy(to.version, GLINT_VERSION);
     std::strcpy(to.description, "This device is an emulator of a GPU.");
     to.purposes = VK_TOOL_PURPOSE_PROFILING_BIT;
     to.layer[0] = 0;

@@ -23,6 +23,12 @@ void check_range(VkQueryPool pool, uint32_t first, uint32_t count) {
         fmt::format("queries {} to {} are not in a pool of {}", first, first + count, pool->values.size()));
 }
 
+VkDeviceSize bytes_of_results(uint32_t count, VkDeviceSize stride, VkQueryResultFlags flags) {
+  const VkDeviceSize number = flags & VK_QUERY_RESULT_64_BIT ? sizeof(uint64_t) : sizeof(uint32_t);
+  const VkDeviceSize last = flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT ? 2 * number : number;
+  return count ? (count - 1) * stride + last : 0;
+}
+
 template <class Number>
 void put(std::byte* to, uint32_t index, uint64_t value) {
   const auto number = Number(value);
@@ -73,9 +79,7 @@ void ResetQueryPool(Device&, VkQueryPool pool, uint32_t first, uint32_t count) {
 VkResult GetQueryPoolResults(Device& device, VkQueryPool pool, uint32_t first, uint32_t count, size_t bytes,
                              void* out, VkDeviceSize stride, VkQueryResultFlags flags) {
   check_range(pool, first, count);
-  const VkDeviceSize number = flags & VK_QUERY_RESULT_64_BIT ? 8 : 4;
-  const VkDeviceSize each = flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT ? 2 * number : number;
-  if (count && (count - 1) * stride + each > bytes)
+  if (bytes_of_results(count, stride, flags) > bytes)
     throw Refusal(fmt::format("{} results do not fit into {} bytes", count, bytes));
   const auto is_there = [&] {
     return std::all_of(pool->values.begin() + first, pool->values.begin() + first + count,
@@ -106,9 +110,7 @@ void CmdCopyQueryPoolResults(CommandBuffer& commands, VkQueryPool pool, uint32_t
                              VkBuffer buffer, VkDeviceSize offset, VkDeviceSize stride,
                              VkQueryResultFlags flags) {
   check_range(pool, first, count);
-  const VkDeviceSize number = flags & VK_QUERY_RESULT_64_BIT ? 8 : 4;
-  const VkDeviceSize each = flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT ? 2 * number : number;
-  const VkDeviceSize bytes = count ? (count - 1) * stride + each : 0;
+  const VkDeviceSize bytes = bytes_of_results(count, stride, flags);
   bytes_of(commands.device, buffer, offset, bytes);
   commands.record([=](Queue& queue) {
     write_results(*pool, first, count, bytes_of(queue.device, buffer, offset, bytes).data, stride, flags);

@@ -51,12 +51,6 @@ bool VkQueue_T::run_commands(Submission& submission) {
 namespace glint::vulkan {
 namespace {
 
-void add_commands(Submission& to, const CommandBuffer& from) {
-  if (from.state != CommandBuffer::State::Executable)
-    throw Refusal("a command buffer that is submitted was not recorded to its end");
-  to.commands.insert(to.commands.end(), from.commands.begin(), from.commands.end());
-}
-
 Submission submission_of(const VkSubmitInfo& info) {
   Submission out;
   const auto* timeline =
@@ -65,7 +59,7 @@ Submission submission_of(const VkSubmitInfo& info) {
     out.waits.push_back({info.pWaitSemaphores[i], timeline && i < timeline->waitSemaphoreValueCount
                                                       ? timeline->pWaitSemaphoreValues[i]
                                                       : 0});
-  for (uint32_t i = 0; i < info.commandBufferCount; ++i) add_commands(out, *info.pCommandBuffers[i]);
+  for (uint32_t i = 0; i < info.commandBufferCount; ++i) info.pCommandBuffers[i]->append_to(out.commands);
   for (uint32_t i = 0; i < info.signalSemaphoreCount; ++i)
     out.signals.push_back({info.pSignalSemaphores[i], timeline && i < timeline->signalSemaphoreValueCount
                                                           ? timeline->pSignalSemaphoreValues[i]
@@ -78,7 +72,7 @@ Submission submission_of(const VkSubmitInfo2& info) {
   for (uint32_t i = 0; i < info.waitSemaphoreInfoCount; ++i)
     out.waits.push_back({info.pWaitSemaphoreInfos[i].semaphore, info.pWaitSemaphoreInfos[i].value});
   for (uint32_t i = 0; i < info.commandBufferInfoCount; ++i)
-    add_commands(out, *info.pCommandBufferInfos[i].commandBuffer);
+    info.pCommandBufferInfos[i].commandBuffer->append_to(out.commands);
   for (uint32_t i = 0; i < info.signalSemaphoreInfoCount; ++i)
     out.signals.push_back({info.pSignalSemaphoreInfos[i].semaphore, info.pSignalSemaphoreInfos[i].value});
   return out;

@@ -37,7 +37,8 @@ struct VkQueue_T : glint::vulkan::Dispatchable {
   explicit VkQueue_T(VkDevice_T& of) : device(of) {}
 
   void submit(glint::vulkan::Submission submission);
-  // Runs submissions as far as they come. Every call that may free the queue calls it.
+  // Runs submissions as far as they come, and wakes the threads that wait for the device. Every call that may
+  // free the queue or such a thread calls it.
   void advance();
   bool is_idle() const { return pending_.empty(); }
 
