@@ -19,7 +19,7 @@ constexpr float kNotThere = std::numeric_limits<float>::quiet_NaN();  // makes a
 std::optional<uint64_t> DeviceGeometry::vertex_of(const DeviceTriangles& from, uint64_t corner) const {
   if (from.index_bytes == 0) return corner + from.first_vertex;
   uint32_t index = 0;
-  const std::byte* const at = memory_.find(from.indices + corner * from.index_bytes, from.index_bytes);
+  const std::byte* const at = find(from.indices + corner * from.index_bytes, from.index_bytes);
   if (!at) return {};
   std::memcpy(&index, at, from.index_bytes);
   return uint64_t{index} + from.first_vertex;
@@ -28,8 +28,7 @@ std::optional<uint64_t> DeviceGeometry::vertex_of(const DeviceTriangles& from, u
 std::optional<DeviceGeometry::Position> DeviceGeometry::position_at(const DeviceTriangles& from,
                                                                     Address at) const {
   Position out{};
-  const std::byte* const bytes =
-      memory_.find(at, from.format ? exec::info_of(*from.format).bytes : sizeof out);
+  const std::byte* const bytes = find(at, from.format ? exec::info_of(*from.format).bytes : sizeof out);
   if (!bytes) return {};
   if (!from.format) {
     std::memcpy(out.data(), bytes, sizeof out);
@@ -65,12 +64,12 @@ void DeviceGeometry::add(const DeviceTriangles& from) {
   geometry.positions = std::as_bytes(std::span(positions));
   geometry.opaque = from.opaque, geometry.no_duplicate_any_hit = from.no_duplicate_any_hit;
   if (from.transform) {
-    if (const std::byte* const at = memory_.find(from.transform, sizeof geometry.transform))
+    if (const std::byte* const at = find(from.transform, sizeof geometry.transform))
       std::memcpy(geometry.transform.data(), at, sizeof geometry.transform);
     else
       notes_.push_back(fmt::format("geometry {}: its transform lies outside of memory: {}",
                                    level_.geometries.size(),
-                                   memory_.explain(from.transform, sizeof geometry.transform)));
+                                   memory_->explain(from.transform, sizeof geometry.transform)));
   }
   level_.geometries.push_back(geometry);
 }
@@ -80,7 +79,7 @@ void DeviceGeometry::add(const DeviceBoxes& from) {
   uint64_t unread = 0;
   for (uint64_t i = 0; i < from.count; ++i) {
     rt::Bounds& box = boxes.emplace_back();
-    const std::byte* const at = memory_.find(from.boxes + i * from.stride, sizeof box);
+    const std::byte* const at = find(from.boxes + i * from.stride, sizeof box);
     if (at)
       std::memcpy(&box, at, sizeof box);
     else

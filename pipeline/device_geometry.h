@@ -1,7 +1,8 @@
-// Reads the geometry of an acceleration structure from memory of a program, in the forms that Vulkan has.
+// Reads the geometry of an acceleration structure from memory of a program or of the host, in Vulkan's forms.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -41,7 +42,9 @@ struct DeviceBoxes {
 // Collects the geometries of a bottom level. What cannot be read is inactive and noted.
 class DeviceGeometry {
  public:
-  explicit DeviceGeometry(const mem::AddressSpace& memory) : memory_(memory) {}
+  explicit DeviceGeometry(const mem::AddressSpace& memory) : memory_(&memory) {}
+  // The addresses are pointers of the host, which has all bytes that the geometry names.
+  DeviceGeometry() = default;
 
   void add(const DeviceTriangles& triangles);
   void add(const DeviceBoxes& boxes);
@@ -52,11 +55,14 @@ class DeviceGeometry {
 
  private:
   using Position = std::array<float, 3>;
+  const std::byte* find(Address at, uint64_t bytes) const {
+    return memory_ ? memory_->find(at, bytes) : reinterpret_cast<const std::byte*>(at);
+  }
   std::optional<uint64_t> vertex_of(const DeviceTriangles& from, uint64_t corner) const;
   std::optional<Position> position_at(const DeviceTriangles& from, Address at) const;
   void note_unread(uint64_t unread, const char* what);
 
-  const mem::AddressSpace& memory_;
+  const mem::AddressSpace* memory_ = nullptr;  // null: the host's
   rt::BottomLevel level_;
   std::deque<std::vector<Position>> positions_;  // of each geometry of triangles
   std::deque<std::vector<rt::Bounds>> boxes_;

@@ -38,7 +38,8 @@ bool is_announced(std::span<const VkExtensionProperties> extensions, std::string
 // Holds all properties of the device by their Vulkan names. What is not set is 0.
 struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceVulkan12Properties,
-                          VkPhysicalDeviceVulkan13Properties {
+                          VkPhysicalDeviceVulkan13Properties,
+                          VkPhysicalDeviceAccelerationStructurePropertiesKHR {
   // The structures of 1.1 rename these.
   VkShaderStageFlags supportedStages = 0;
   VkSubgroupFeatureFlags supportedOperations = 0;

@@ -38,6 +38,15 @@ void bind_buffers(Device& device, pipeline::LaunchBuilder& builder, const Place&
   builder.bind_buffers(number, all);
 }
 
+void bind_structures(pipeline::LaunchBuilder& builder, const Place& place, pipeline::BindingPlace number) {
+  std::vector<pipeline::BufferRange> all;
+  for (uint32_t i = 0; i < place.layout.count; ++i) {
+    const Address structure = place.at(i).structure;
+    all.push_back(structure ? pipeline::BufferRange{structure, 0} : pipeline::LaunchBuilder::unbound(number));
+  }
+  builder.bind_buffers(number, all);
+}
+
 // Returns the texels of a buffer as an image with one row.
 exec::ImageView texels_of(Device& device, const VkBufferView_T& view) {
   const uint64_t bytes = bytes_of(device, view.buffer, view.offset, view.range).bytes;
@@ -93,6 +102,8 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
     case DescriptorKind::TexelBuffer:
     case DescriptorKind::Image:
       return bind_images(device, builder, place, number);
+    case DescriptorKind::Structure:
+      return bind_structures(builder, place, number);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 
+#include "vulkan/acceleration_structure.h"
 #include "vulkan/chain.h"
 #include "vulkan/device.h"
 
@@ -57,6 +58,11 @@ void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
     to.texels = *static_cast<const VkBufferView*>(info);
     return;
   }
+  if (kind == DescriptorKind::Structure) {
+    const auto from = *static_cast<const VkAccelerationStructureKHR*>(info);
+    to.structure = from ? from->address : 0;
+    return;
+  }
   const auto& from = *static_cast<const VkDescriptorImageInfo*>(info);
   if (kind == DescriptorKind::Image) to.view = from.imageView;
   if (has_sampler(type) && !cursor.has_immutable_sampler()) to.sampler = from.sampler;
@@ -69,6 +75,13 @@ const void* info_of(const VkWriteDescriptorSet& from, uint32_t element) {
       return from.pBufferInfo + element;
     case DescriptorKind::TexelBuffer:
       return from.pTexelBufferView + element;
+    case DescriptorKind::Structure: {
+      const auto* const more = find_in_chain<VkWriteDescriptorSetAccelerationStructureKHR>(
+          &from, VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR);
+      if (!more || element >= more->accelerationStructureCount)
+        throw Refusal("a descriptor of an acceleration structure is written without one");
+      return more->pAccelerationStructures + element;
+    }
     case DescriptorKind::InlineBlock:
     case DescriptorKind::Image:
     case DescriptorKind::Sampler:
@@ -119,6 +132,8 @@ DescriptorKind kind_of(VkDescriptorType type) {
       return DescriptorKind::InlineBlock;
     case VK_DESCRIPTOR_TYPE_SAMPLER:
       return DescriptorKind::Sampler;
+    case VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR:
+      return DescriptorKind::Structure;
     default:
       return DescriptorKind::Image;
   }

@@ -19,10 +19,11 @@ struct Descriptor {
   VkImageView view = nullptr;
   VkSampler sampler = nullptr;
   VkBufferView texels = nullptr;
+  Address structure = 0;  // of an acceleration structure
 };
 
 // Says what descriptors of a type refer to.
-enum class DescriptorKind : uint8_t { Buffer, InlineBlock, TexelBuffer, Image, Sampler };
+enum class DescriptorKind : uint8_t { Buffer, InlineBlock, TexelBuffer, Image, Sampler, Structure };
 DescriptorKind kind_of(VkDescriptorType type);
 // Returns whether a descriptor of the type has a sampler, alone or with its image.
 bool has_sampler(VkDescriptorType type);

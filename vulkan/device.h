@@ -10,6 +10,7 @@
 #include "frontend/cache.h"
 #include "memsys/address_space.h"
 #include "pipeline/device.h"
+#include "vulkan/acceleration_structure.h"
 #include "vulkan/clock.h"
 #include "vulkan/instance.h"
 #include "vulkan/memory.h"
@@ -27,10 +28,12 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
   glint::mem::AddressSpace memory;
-  glint::vulkan::BufferParts parts;                              // of `memory`
-  glint::frontend::ShaderCache shader_cache{{}};                 // in memory only
-  VkDeviceSize allocated_bytes = 0;                              // of the heap
-  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0;  // They give objects names.
+  glint::vulkan::BufferParts parts;               // of `memory`
+  glint::frontend::ShaderCache shader_cache{{}};  // in memory only
+  VkDeviceSize allocated_bytes = 0;               // of the heap
+  std::set<VkAccelerationStructureKHR> structures;
+  // They give objects names.
+  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0;
   glint::vulkan::DeviceClock clock;
   glint::pipeline::Device gpu;  // runs launches
   struct Launches {

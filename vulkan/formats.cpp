@@ -33,6 +33,14 @@ bool can_be_atomic(exec::TexelFormat format) {
   return format == exec::TexelFormat::R32Uint || format == exec::TexelFormat::R32Sint;
 }
 
+// Returns whether triangles of acceleration structures may have corners of a format.
+bool can_be_vertex(VkFormat format, const std::optional<exec::TexelFormat>& texels) {
+  if (format == VK_FORMAT_R32G32B32_SFLOAT) return true;
+  if (!texels || is_depth(format)) return false;
+  const exec::FormatInfo& info = exec::info_of(*texels);
+  return info.channels >= 2 && info.bits >= 16 && !exec::is_integer(info);
+}
+
 // Says for what an image may be used that has these features.
 VkImageUsageFlags usage_of(VkFormatFeatureFlags2 features) {
   VkImageUsageFlags out = 0;
@@ -68,8 +76,10 @@ VkFormatFeatureFlags2 image_features_of(VkFormat format) {
 
 VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
   const auto texels = format_of(format);
-  if (!texels || is_depth(format)) return 0;
-  VkFormatFeatureFlags2 out = VK_FORMAT_FEATURE_2_UNIFORM_TEXEL_BUFFER_BIT;
+  const VkFormatFeatureFlags2 vertex =
+      can_be_vertex(format, texels) ? VK_FORMAT_FEATURE_2_ACCELERATION_STRUCTURE_VERTEX_BUFFER_BIT_KHR : 0;
+  if (!texels || is_depth(format)) return vertex;
+  VkFormatFeatureFlags2 out = vertex | VK_FORMAT_FEATURE_2_UNIFORM_TEXEL_BUFFER_BIT;
   if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_BIT | kWithoutFormat;
   if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_ATOMIC_BIT;
   return out;

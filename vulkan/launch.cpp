@@ -82,7 +82,8 @@ void launch(Queue& queue, const Bindings& bound, const std::array<uint32_t, 3>& 
   builder.world.robust_buffers = device.has("robustBufferAccess");
   builder.world.robust_images = device.has("robustImageAccess");
   builder.world.on_fault = device.physical.instance.settings.on_fault;
-  run(queue, *bound.pipeline, builder.finish(), prints);
+  const uint32_t need = device.physical.gpu.rt.unit == rt::kSoftware ? stack_need(device) : 0;
+  run(queue, *bound.pipeline, builder.finish(need), prints);
 }
 
 }  // namespace glint::vulkan

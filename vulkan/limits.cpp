@@ -149,6 +149,17 @@ void set_descriptor_indexing(DeviceProperties& p) {
   p.maxPushDescriptors = 32;
 }
 
+void set_acceleration_structures(DeviceProperties& p) {
+  p.maxGeometryCount = p.maxInstanceCount = (1u << 24) - 1;
+  p.maxPrimitiveCount = (1u << 29) - 1;
+  for (uint32_t* limit :
+       {&p.maxPerStageDescriptorAccelerationStructures,
+        &p.maxPerStageDescriptorUpdateAfterBindAccelerationStructures,
+        &p.maxDescriptorSetAccelerationStructures, &p.maxDescriptorSetUpdateAfterBindAccelerationStructures})
+    *limit = kManyDescriptors;
+  p.minAccelerationStructureScratchOffsetAlignment = 64;
+}
+
 }  // namespace
 
 VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_universal) {
@@ -177,6 +188,7 @@ DeviceProperties properties_of(const pipeline::GpuParams&, const std::string& pr
   set_floats(p);
   set_descriptor_indexing(p);
   set_inline_uniform_blocks(p);
+  set_acceleration_structures(p);
   p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
   p.maxMultiviewViewCount = 6, p.maxMultiviewInstanceIndex = (1u << 27) - 1;
   p.maxMemoryAllocationSize = p.maxBufferSize = kMaxAllocationBytes;

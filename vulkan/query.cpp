@@ -1,26 +1,31 @@
-// Holds query pools: timestamps, which the device's clock gives.
+// Makes query pools, and answers what was queried: timestamps, which the device's clock gives, and properties
+// of acceleration structures.
 // SPDX-License-Identifier: Apache-2.0
+#include "vulkan/query.h"
+
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 #include <optional>
-#include <vector>
 
 #include "vulkan/command_buffer.h"
 #include "vulkan/device.h"
 #include "vulkan/memory.h"
 
-struct VkQueryPool_T {
-  std::vector<std::optional<uint64_t>> values;  // nothing: not available
-};
-
 namespace glint::vulkan {
 namespace {
 
-void check_range(VkQueryPool pool, uint32_t first, uint32_t count) {
-  if (first > pool->values.size() || count > pool->values.size() - first)
-    throw Refusal(
-        fmt::format("queries {} to {} are not in a pool of {}", first, first + count, pool->values.size()));
+bool is_known(VkQueryType type) {
+  switch (int(type)) {
+    case VK_QUERY_TYPE_TIMESTAMP:
+    case VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR:
+    case VK_QUERY_TYPE_ACCELERATION_STRUCTURE_SERIALIZATION_SIZE_KHR:
+    case VK_QUERY_TYPE_ACCELERATION_STRUCTURE_SERIALIZATION_BOTTOM_LEVEL_POINTERS_KHR:
+    case VK_QUERY_TYPE_ACCELERATION_STRUCTURE_SIZE_KHR:
+      return true;
+    default:
+      return false;
+  }
 }
 
 VkDeviceSize bytes_of_results(uint32_t count, VkDeviceSize stride, VkQueryResultFlags flags) {
@@ -61,9 +66,16 @@ void reset(VkQueryPool pool, uint32_t first, uint32_t count) {
 
 }  // namespace
 
+void check_range(VkQueryPool pool, uint32_t first, uint32_t count) {
+  if (first > pool->values.size() || count > pool->values.size() - first)
+    throw Refusal(
+        fmt::format("queries {} to {} are not in a pool of {}", first, first + count, pool->values.size()));
+}
+
 VkResult CreateQueryPool(Device&, const VkQueryPoolCreateInfo* info, VkQueryPool* out) {
-  if (info->queryType != VK_QUERY_TYPE_TIMESTAMP)
-    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "only timestamps can be queried");
+  if (!is_known(info->queryType))
+    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT,
+                  "only timestamps and properties of acceleration structures can be queried");
   *out = new VkQueryPool_T{std::vector<std::optional<uint64_t>>(info->queryCount)};
   return VK_SUCCESS;
 }
