@@ -80,6 +80,11 @@ std::string Resources::lab_path(const std::string& name_or_path) const {
   return path_in(root_ + "/labs", name_or_path, "experiment", "one of Glint's");
 }
 
+std::string Resources::python_dir() const {
+  std::error_code ignored;
+  return fs::is_regular_file(root_ + "/python/glint/__init__.py", ignored) ? root_ + "/python" : "";
+}
+
 std::string read_file(const std::string& path) {
   std::error_code error;
   std::optional<std::string> text = text_of_file(path);

@@ -103,6 +103,7 @@ int main_of(int argc, char** argv) {
   add_run(app, session);
   add_bench(app, session);
   add_lab(app, session);
+  add_sweep(app, session);
   add_stats(app, session);
   add_report(app, session);
   add_characterize(app, session);

@@ -29,6 +29,7 @@ struct Session {
 void add_run(Command app, Session& session);
 void add_bench(Command app, Session& session);
 void add_lab(Command app, Session& session);
+void add_sweep(Command app, Session& session);
 void add_stats(Command app, Session& session);
 void add_report(Command app, Session& session);
 void add_characterize(Command app, Session& session);

@@ -42,3 +42,7 @@ class CommandFailed(GlintError):
         super().__init__(message)
         self.code = code
         self.output = output
+
+
+class SweepError(GlintError):
+    """A sweep, one of its points or a store cannot be used as it is. The message says what to change."""

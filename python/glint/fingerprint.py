@@ -20,7 +20,7 @@ class Fingerprints:
 
     def __init__(self, program: str):
         self._program = program
-        self._known: dict[str, str] = {"program": _hash(pathlib.Path(program))}
+        self._known: dict[str, str] = {"program": file_hash(pathlib.Path(program))}
 
     def of(self, workload: str, config: str, settings: Mapping[str, str]) -> str:
         """Returns the fingerprint of a run. Raises CommandFailed when the program refuses the configuration."""
@@ -28,7 +28,7 @@ class Fingerprints:
         if keys not in self._known:
             self._known[keys] = self._configuration(config, settings)
         if workload not in self._known:
-            self._known[workload] = " ".join(f"{path.name}:{_hash(path)}" for path in files_of(pathlib.Path(workload)))
+            self._known[workload] = " ".join(f"{path.name}:{file_hash(path)}" for path in files_of(pathlib.Path(workload)))
         text = " ".join((self._known["program"], self._known[keys], self._known[workload]))
         return hashlib.sha256(text.encode()).hexdigest()
 
@@ -64,6 +64,7 @@ def _is_file(path: pathlib.Path) -> bool:
         return False
 
 
-def _hash(path: Any) -> str:
+def file_hash(path: Any) -> str:
+    """Returns the SHA-256 of a file."""
     with open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

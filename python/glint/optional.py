@@ -6,7 +6,8 @@ from types import ModuleType
 
 from .errors import MissingPackage
 
-_DEBIAN = {"numpy": "python3-numpy", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib"}
+_DEBIAN = {"numpy": "python3-numpy", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib", "scipy": "python3-scipy",
+           "distributed": "python3-distributed", "pyarrow": "python3-pyarrow (or pip install pyarrow)"}
 
 
 def require(name: str, purpose: str) -> ModuleType:

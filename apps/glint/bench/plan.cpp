@@ -30,17 +30,6 @@ std::string bytes_of(const std::string& path) {
   return setup::text_of_file(path).value_or("");
 }
 
-// Hashes the names and contents of the shaders, so that edited shaders give new results.
-uint64_t hash_of_shaders(const setup::Resources& resources) {
-  std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(resources.shader_dir("")))
-    if (entry.is_regular_file()) files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
-  std::string all;
-  for (const std::string& file : files) all += fs::path(file).filename().string() + "\n" + bytes_of(file);
-  return report::fnv1a(all);
-}
-
 // Returns everything that a result depends on. Two runs of the same key give the same statistics.
 std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
@@ -92,6 +81,16 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
 }
 
 }  // namespace
+
+uint64_t hash_of_shaders(const setup::Resources& resources) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(resources.shader_dir("")))
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const std::string& file : files) all += fs::path(file).filename().string() + "\n" + bytes_of(file);
+  return report::fnv1a(all);
+}
 
 BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   check_observation(options.observe, options.mode == "timing");

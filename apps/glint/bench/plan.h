@@ -38,6 +38,9 @@ struct BenchPlan {
   std::vector<BenchTask> tasks;
 };
 
+// Hashes the names and contents of the built-in shaders, so that edited shaders give new results.
+uint64_t hash_of_shaders(const setup::Resources& resources);
+
 // Plans a suite without making any file. Throws UserError for options that are impossible.
 BenchPlan plan_bench(const Session& session, const BenchOptions& options);
 

@@ -1,6 +1,7 @@
 // Declares `glint describe NAME`, which explains a configuration key, a statistic or a metric.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
@@ -8,6 +9,7 @@
 #include "apps/glint/options/output.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
+#include "apps/glint/sweep/points.h"
 #include "base/params.h"
 #include "memsys/peak.h"
 #include "report/metrics/metrics.h"
@@ -18,6 +20,7 @@ namespace {
 struct DescribeOptions {
   std::string key, config = "mobile";
   std::vector<std::string> settings;
+  std::string points;  // file with points of a sweep
   bool markdown = false;
 };
 
@@ -77,6 +80,12 @@ bool print_metric(const std::string& wanted, std::vector<std::string>& names) {
 }
 
 Exit describe(const Session& session, const DescribeOptions& options) {
+  if (!options.points.empty()) {
+    std::ifstream file(options.points == "-" ? "/dev/stdin" : options.points);
+    if (!file) throw UserError({options.points}, "cannot read the file");
+    describe_points(session, file);
+    return Exit::Ok;
+  }
   const pipeline::GpuParams params = read_config(session.resources, options.config, options.settings);
   std::vector<ParamInfo> found;
   std::vector<std::string> names;
@@ -115,6 +124,11 @@ void add_describe(Command app, Session& session) {
       .capture_default_str();
   command.add_option("--set", options->settings, "Override one key, such as core.warps=16; repeatable")
       .type_name("KEY=VALUE");
+  command
+      .add_option("--points", options->points,
+                  "Check the points of a sweep, a line of JSON each (docs/sweeps.md), and print what each "
+                  "depends on; -: standard input")
+      .type_name("FILE");
   command.add_flag("--markdown", options->markdown, "Print the table of docs/config.md");
   command.callback(
       [&session, options] { session.action = [&session, options] { return describe(session, *options); }; });

@@ -1,0 +1,108 @@
+// Declares `glint sweep`, which hands its command line to the Python package: a sweep's engines are Python's.
+// SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include "apps/glint/options/command_line.h"
+#include "apps/glint/session.h"
+#include "base/diagnostics.h"
+
+namespace glint::app {
+namespace {
+
+// Only their rules count here. The package reads the same words again (python/glint/sweeps/command.py), and a
+// test compares the two lists.
+struct SweepOptions {
+  std::string action, file, store, engine, scheduler, out, point, python = "python3";
+  std::vector<std::string> slurm;
+  uint32_t workers = 0, chunk = 0;
+  double memory = 0;
+  bool detach = false, failed = false, yes = false, json = false, dry_run = false;
+};
+
+// Replaces this process by the package. Ctrl-C then reaches the package itself.
+Exit hand_over(const Session& session, const SweepOptions& options) {
+  const std::string package = session.resources.python_dir();
+  if (!package.empty()) {
+    const char* before = std::getenv("PYTHONPATH");
+    const std::string path = before && *before ? package + ":" + before : package;
+    ::setenv("PYTHONPATH", path.c_str(), 1);
+  }
+  char program[4096];
+  const ssize_t length = ::readlink("/proc/self/exe", program, sizeof program - 1);
+  if (length > 0) ::setenv("GLINT", std::string(program, size_t(length)).c_str(), 1);
+  std::vector<std::string> words = {options.python, "-m", "glint.sweeps"};
+  bool after = false;
+  for (const std::string& word : session.arguments) {
+    if (after) words.push_back(word);
+    after = after || word == "sweep";
+  }
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ::execvp(pointers[0], pointers.data());
+  throw UserError({}, fmt::format("cannot start '{}': {}", options.python, std::strerror(errno)),
+                  "sweeps need Python 3.11 or newer; --python names another one");
+}
+
+void add_options(Command command, SweepOptions& options) {
+  command
+      .add_option("ACTION", options.action,
+                  "What to do: run, status, resume, cancel, open or gc (docs/sweeps.md)")
+      .required()
+      .one_of({"run", "status", "resume", "cancel", "open", "gc"});
+  command.add_option("SWEEP", options.file, "File of the sweep (sweep.toml), or its name in the store");
+  command
+      .add_option("--store", options.store,
+                  "Folder that keeps the points of all sweeps (default: the file's `store`, else out/store)")
+      .type_name("DIR");
+  command
+      .add_option("--engine", options.engine,
+                  "Who distributes the points: processes of this machine, a Slurm cluster, or a Dask one "
+                  "(default: the file's, else local)")
+      .one_of({"local", "slurm", "dask"});
+  command.add_option("--workers", options.workers,
+                     "Number of points to run at a time on this machine; 0: one for each processor");
+  command.add_option("--memory", options.memory,
+                     "Memory in GB that the points on this machine may take together; 0: what is available");
+  command.add_option("--scheduler", options.scheduler,
+                     "Address of a Dask scheduler (tcp://HOST:PORT; default: a cluster on this machine)");
+  command.add_option("--chunk", options.chunk,
+                     "Number of points of a task of a cluster; 0: chosen by their number");
+  command
+      .add_option("--slurm", options.slurm, "Option for sbatch, such as --slurm=--partition=long; repeatable")
+      .allow_extra_args(false);
+  command.add_flag("--detach", options.detach,
+                   "Leave once all tasks are submitted, and do not wait for them");
+  command.add_flag("--failed", options.failed, "Let `resume` also run points again that have failed");
+  command.add_flag("--dry-run", options.dry_run, "Check all points and say what would be run");
+  command.add_option("--out", options.out, "Folder for the run that `open` unpacks").type_name("DIR");
+  command.add_option("--point", options.point,
+                     "The point that `open` unpacks: its id or the beginning of it");
+  command.add_flag("--yes", options.yes, "Let `gc` remove what it lists");
+  command.add_flag("--json", options.json, "Print the status as JSON");
+  command.add_option("--python", options.python, "Python to use: 3.11 or newer")
+      .envname("GLINT_PYTHON")
+      .capture_default_str();
+}
+
+}  // namespace
+
+void add_sweep(Command app, Session& session) {
+  auto options = std::make_shared<SweepOptions>();
+  Command command = app.add_subcommand(
+      "sweep",
+      "Run workloads over many configurations, on this machine or on a cluster, and collect the results");
+  add_options(command, *options);
+  command.callback(
+      [&session, options] { session.action = [&session, options] { return hand_over(session, *options); }; });
+}
+
+}  // namespace glint::app

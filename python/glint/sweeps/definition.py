@@ -1,0 +1,248 @@
+# Reads what a sweep is: sweep.toml, or the same as a dictionary.
+# SPDX-License-Identifier: Apache-2.0
+"""`Definition.read(path)` and `Definition.of(dictionary)` check every name before anything runs."""
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import re
+import tomllib
+from typing import Any, Mapping
+
+from ..documents import flat
+from ..errors import SweepError
+from ..patterns import near
+from .constraints import Constraint
+from .design import METHODS, points_of
+
+_KEYS = ("name", "store", "workloads", "configs", "seeds", "replicas", "run", "set", "design", "constraints", "stats", "report", "objectives", "limits", "retry", "engine",
+         "threads", "slurm", "dask")
+_OWN = {"out": "the store has a folder for each point", "config": "use `configs`", "set": "use [set] and [[design]]", "seed": "use `seeds` or `replicas`", "stats": "use `stats`",
+        "threads": "use `threads`", "json": "the results go to the store", "progress-fd": "it is Glint's own"}
+_FILES = ("launch", "shader-dir", "assets", "include")  # options of [run] that name files
+RETRIES = {"crash": 1, "timeout": 0, "memory": 1, "lost": 2}
+_DESIGN = ("method", "points", "seed", "keys", "list")
+
+
+@dataclasses.dataclass
+class Definition:
+    """Holds a sweep: what docs/sweeps.md says of each key of the file."""
+    name: str
+    workloads: list[str]
+    configs: list[str] = dataclasses.field(default_factory=lambda: ["mobile"])
+    seeds: list[int] = dataclasses.field(default_factory=lambda: [1])
+    options: list[str] = dataclasses.field(default_factory=list)
+    oracles: list[str] = dataclasses.field(default_factory=list)
+    settings: dict[str, Any] = dataclasses.field(default_factory=dict)
+    designs: list[dict[str, Any]] = dataclasses.field(default_factory=list)
+    constraints: list[str] = dataclasses.field(default_factory=list)
+    stats: str = "compact"
+    report: bool = False
+    objectives: list[str] = dataclasses.field(default_factory=lambda: ["cycles"])
+    timeout: float | None = None
+    memory_limit: int | None = None
+    retry: dict[str, int] = dataclasses.field(default_factory=lambda: dict(RETRIES))
+    engine: str = "local"
+    threads: int = 1
+    slurm: dict[str, Any] = dataclasses.field(default_factory=dict)
+    dask: dict[str, Any] = dataclasses.field(default_factory=dict)
+    store: str | None = None
+
+    @staticmethod
+    def read(path: str | pathlib.Path) -> "Definition":
+        """Returns the sweep of a file. Paths in it count from the file's folder. Raises SweepError, which names the file and what is wrong."""
+        path = pathlib.Path(path)
+        try:
+            tree = tomllib.loads(path.read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            raise SweepError(f"{path}: the file cannot be read: {error}") from error
+        try:
+            return Definition.of({"name": path.stem, **tree}, path.resolve().parent)
+        except SweepError as error:
+            raise SweepError(f"{path}: {error}") from error
+
+    @staticmethod
+    def of(tree: Mapping[str, Any], folder: str | pathlib.Path = ".") -> "Definition":
+        """Returns the sweep of a dictionary that has the form of sweep.toml. Paths in it count from `folder`."""
+        _known(tree, _KEYS, "the sweep")
+        folder = pathlib.Path(folder).resolve()
+        limits, retry = _table(tree, "limits"), _table(tree, "retry")
+        _known(limits, ("timeout", "memory"), "[limits]")
+        _known(retry, RETRIES, "[retry]")
+        options, oracles = _options(_table(tree, "run"), folder)
+        made = Definition(
+            name=_name(tree.get("name", "sweep")), workloads=[_path(one, folder) for one in _texts(tree, "workloads", None)],
+            configs=[_path(one, folder) for one in _texts(tree, "configs", ["mobile"])], seeds=_seeds(tree), options=options, oracles=oracles,
+            settings=flat(_table(tree, "set")), designs=_designs(tree.get("design", [])), constraints=_texts(tree, "constraints", []),
+            stats=_word(tree, "stats", ("compact", "full"), "compact"), report=_flag(tree, "report"), objectives=_texts(tree, "objectives", ["cycles"]),
+            timeout=seconds_of(limits["timeout"]) if "timeout" in limits else None, memory_limit=bytes_of(limits["memory"]) if "memory" in limits else None,
+            retry={**RETRIES, **{kind: _whole(count, f"[retry] {kind}", 0) for kind, count in retry.items()}},
+            engine=_word(tree, "engine", ("local", "slurm", "dask"), "local"), threads=_whole(tree.get("threads", 1), "threads", 1), slurm=_slurm(_table(tree, "slurm")),
+            dask=_table(tree, "dask"), store=str((folder / tree["store"]).resolve()) if "store" in tree else None)
+        _known(made.dask, ("scheduler", "chunk"), "[dask]")
+        if made.report and made.stats != "full":
+            raise SweepError("`report` needs stats = \"full\": a report shows every unit, and compact statistics have totals alone")
+        for text in made.constraints:
+            Constraint(text)
+        made.settings_of_points()
+        return made
+
+    def settings_of_points(self) -> list[tuple[int, dict[str, Any]]]:
+        """Returns the number of the design and the settings of every point, before workloads, configurations, seeds and constraints."""
+        if not self.designs:
+            return [(0, dict(self.settings))]
+        return [(i, {**self.settings, **point}) for i, one in enumerate(self.designs)
+                for point in points_of(one["method"], one.get("keys", {}), one.get("points"), one.get("seed", 1), one.get("list", []))]
+
+    @property
+    def swept(self) -> list[str]:
+        """Returns the keys that differ between points, in the order of the file."""
+        names = [key for one in self.designs for key in (*one.get("keys", {}), *(name for point in one.get("list", []) for name in point))]
+        return list(dict.fromkeys(names))
+
+
+def seconds_of(given: Any) -> float:
+    """Returns the seconds of a number or of a text such as "90 s", "10 min" or "2 h"."""
+    match = re.fullmatch(r"\s*([\d.]+)\s*(s|min|h|d)?\s*", str(given))
+    try:
+        value = float(match[1]) * {"s": 1, "min": 60, "h": 3600, "d": 86400, None: 1}[match[2]] if match else 0
+    except ValueError:
+        value = 0
+    if value <= 0:
+        raise SweepError(f"{given!r} is no time: examples are \"90 s\", \"10 min\" and \"2 h\"")
+    return value
+
+
+def bytes_of(given: Any) -> int:
+    """Returns the bytes of a number of GB or of a text such as "500 MB" or "4 GB"."""
+    match = re.fullmatch(r"\s*([\d.]+)\s*(MB|GB)?\s*", str(given))
+    try:
+        value = int(float(match[1]) * {"MB": 1e6, "GB": 1e9, None: 1e9}[match[2]]) if match else 0
+    except ValueError:
+        value = 0
+    if value <= 0:
+        raise SweepError(f"{given!r} is no amount of memory: examples are \"500 MB\" and \"4 GB\"")
+    return value
+
+
+def _known(table: Mapping[str, Any], names: Any, where: str) -> None:
+    for key in table:
+        if key not in names:
+            raise SweepError(f"{where} has no key '{key}'{near(key, list(names))}")
+
+
+def _table(tree: Mapping[str, Any], key: str) -> dict[str, Any]:
+    found = tree.get(key, {})
+    if not isinstance(found, Mapping):
+        raise SweepError(f"[{key}] is {found!r}: a table is needed")
+    return dict(found)
+
+
+def _name(given: Any) -> str:
+    if not isinstance(given, str) or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}", given):
+        raise SweepError(f"the name {given!r} cannot be a folder's: letters, digits, '_', '-' and '.' are allowed, up to 64 of them")
+    return given
+
+
+def _texts(tree: Mapping[str, Any], key: str, otherwise: list[str] | None) -> list[str]:
+    given = tree.get(key, otherwise)
+    given = [given] if isinstance(given, (str, pathlib.PurePath)) else given
+    if not isinstance(given, (list, tuple)) or not all(isinstance(one, (str, pathlib.PurePath)) for one in given) or (otherwise is None and not given):
+        raise SweepError(f"`{key}` is {given!r}: a list of texts is needed")
+    return [str(one) for one in given]
+
+
+def _word(tree: Mapping[str, Any], key: str, words: tuple[str, ...], otherwise: str) -> str:
+    if tree.get(key, otherwise) not in words:
+        raise SweepError(f"`{key}` is {tree[key]!r}: it is one of {', '.join(words)}")
+    return tree.get(key, otherwise)
+
+
+def _flag(tree: Mapping[str, Any], key: str) -> bool:
+    if not isinstance(tree.get(key, False), bool):
+        raise SweepError(f"`{key}` is {tree[key]!r}: it is true or false")
+    return tree.get(key, False)
+
+
+def _whole(value: Any, what: str, least: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise SweepError(f"`{what}` is {value!r}: a whole number from {least} is needed")
+    return value
+
+
+def _seeds(tree: Mapping[str, Any]) -> list[int]:
+    if "seeds" in tree and "replicas" in tree:
+        raise SweepError("`seeds` and `replicas` say the same: replicas = 3 means seeds = [1, 2, 3]")
+    if "replicas" in tree:
+        return list(range(1, _whole(tree["replicas"], "replicas", 1) + 1))
+    given = tree.get("seeds", [1])
+    if not isinstance(given, list) or not given:
+        raise SweepError(f"`seeds` is {given!r}: a list of whole numbers is needed")
+    return [_whole(one, "seeds", 0) for one in given]
+
+
+def _path(given: str, folder: pathlib.Path) -> str:
+    """Returns the path of a file beside the sweep's, or the text itself where there is no such file."""
+    return str(folder / given) if (folder / given).exists() and ("." in given or "/" in given) else given
+
+
+def _options(table: dict[str, Any], folder: pathlib.Path) -> tuple[list[str], list[str]]:
+    """Returns the words of [run] on the command line, and the oracles that it names."""
+    words, oracles = [], []
+    for name, value in table.items():
+        option = name.replace("_", "-")
+        if option in _OWN:
+            raise SweepError(f"[run] has '{name}': {_OWN[option]}")
+        for one in value if isinstance(value, list) else [value]:
+            if option == "oracle":
+                oracles.append(str(one))
+            elif isinstance(one, bool):
+                words += [f"--{option}"] if one else []
+            elif isinstance(one, (str, int, float)):
+                words.append(f"--{option}={_path(one, folder) if option in _FILES and isinstance(one, str) else one}")
+            else:
+                raise SweepError(f"[run] has {name} = {one!r}: a text, a number, true or a list of them is needed")
+    return sorted(words), oracles
+
+
+def _designs(given: Any) -> list[dict[str, Any]]:
+    out = []
+    for one in [given] if isinstance(given, Mapping) else given:
+        if not isinstance(one, Mapping):
+            raise SweepError(f"a design is {one!r}: a table [[design]] is needed")
+        _known(one, _DESIGN, "[[design]]")
+        design = dict(one)
+        design.setdefault("method", "list" if "list" in design else "grid")
+        if design["method"] not in METHODS:
+            raise SweepError(f"the method is {design['method']!r}: it is one of {', '.join(METHODS)}")
+        if "points" in design:
+            _whole(design["points"], "points", 1)
+        _whole(design.get("seed", 1), "seed", 0)
+        if not isinstance(design.get("keys", {}), Mapping):
+            raise SweepError("[design.keys] is not a table of keys")
+        design["keys"] = _ranges(design.get("keys", {}))
+        listed = design.get("list", [])
+        if not isinstance(listed, list) or not all(isinstance(point, Mapping) for point in listed):
+            raise SweepError("`list` is not a list of tables, { \"rt.warps\" = 4 } each")
+        design["list"] = [flat(dict(point)) for point in listed]
+        if (design["method"] == "list") != bool(design["list"]):
+            raise SweepError("the method \"list\" needs `list`, and no other method has it")
+        out.append(design)
+    return out
+
+
+def _ranges(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Returns axes by dotted key. A table with `low` is a range, and any other table is a part of a key."""
+    out: dict[str, Any] = {}
+    for name, value in table.items():
+        if isinstance(value, Mapping) and "low" not in value and "high" not in value:
+            out.update(_ranges(value, f"{prefix}{name}."))
+        else:
+            out[prefix + name] = value
+    return out
+
+
+def _slurm(table: dict[str, Any]) -> dict[str, Any]:
+    _known(table, ("options", "setup", "chunk", "python"), "[slurm]")
+    table["options"] = _texts(table, "options", [])
+    return table

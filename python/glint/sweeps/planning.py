@@ -1,0 +1,197 @@
+# Makes the points of a sweep: checks all of them before the first runs, and names each by what it depends on.
+# SPDX-License-Identifier: Apache-2.0
+"""`plan(definition, program)` gives the points, each of which has the id of its contents."""
+from __future__ import annotations
+
+import concurrent.futures
+import hashlib
+import itertools
+import json
+import os
+import pathlib
+import subprocess
+from typing import Any, Iterable
+
+from ..errors import CommandFailed, SweepError
+from ..fingerprint import file_hash, files_of
+from .constraints import Constraint
+from .definition import Definition
+
+SCHEMA = 1  # of a point; another one gives other ids
+_SHOWN = 10  # points that a message names
+_SLICE = 500  # points that one process checks at a time
+
+
+class Program:
+    """Holds what all points of a sweep depend on: the program, its shaders and its plugins."""
+
+    def __init__(self, path: str):
+        self.path = path
+        self.hash = file_hash(path)
+        self.stamp = stamp_of(path)
+        self.facts = ask(self, [])[0]
+
+
+def stamp_of(path: str) -> list[int]:
+    """Returns size and time of a file, by which a changed program is noticed without reading it."""
+    about = os.stat(path)
+    return [about.st_size, about.st_mtime_ns]
+
+
+def ask(program: Program, points: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Returns what `glint describe --points` says: the facts of the program, then an answer for each point."""
+    text = "".join(json.dumps(point) + "\n" for point in points)
+    done = subprocess.run([program.path, "describe", "--points", "-"], input=text, capture_output=True, text=True, check=False)
+    lines = done.stdout.splitlines()
+    if done.returncode or len(lines) != len(points) + 1:
+        raise CommandFailed(f"{program.path} describe --points ended with exit code {done.returncode}: {done.stderr.strip()}", done.returncode, done.stderr)
+    return [json.loads(line) for line in lines]
+
+
+def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
+    """Returns the points of a sweep in order. Raises SweepError, which names every kind of wrong point, before anything runs.
+
+    A point has `index`, `id`, `workload`, `config`, `set` (texts by key), `seed`, `options`, `design`, and the estimates `memory` (bytes) and `weight`.
+    """
+    raw = _raw(definition)
+    kept = _within_constraints(definition, program, raw)
+    if not kept:
+        raise SweepError("the sweep has no points" + (f": its constraints leave none of {len(raw)}" if raw else ""))
+    asked = [{"workload": one["workload"], "config": one["config"], "settings": [f"{key}={value}" for key, value in one["set"].items()], "oracles": definition.oracles,
+              "options": one["options"], "keys": list(one["set"])} for one in kept]
+    answers = _answers(program, asked)
+    _refuse(kept, answers)
+    names = _Contents(program)
+    points = []
+    for index, (one, answer) in enumerate(zip(kept, answers)):
+        identity = [SCHEMA, names.program, names.workload(one["workload"]), answer["config"], names.options(one["options"]), one["seed"], definition.stats, definition.report]
+        made = {"index": index, "id": hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:32], **one, "resolved": answer.get("keys") or {}, "memory": answer["memory"],
+                "weight": answer["weight"]}
+        points.append(made)
+    return points
+
+
+def words_of(point: dict[str, Any], definition: Definition) -> list[str]:
+    """Returns the words of a point's command line after `glint`, without the folder that it writes to."""
+    oracles = [f"--oracle={name}" for name in definition.oracles]
+    settings = [f"--set={key}={value}" for key, value in point["set"].items()]
+    return ["run", point["workload"], f"--config={point['config']}", *oracles, *settings, *point["options"], f"--stats={definition.stats}"]
+
+
+def _raw(definition: Definition) -> list[dict[str, Any]]:
+    """Returns workloads x configurations x points of designs x seeds. The points of a design stay together, because samples are read as a whole."""
+    found = []
+    chosen = definition.settings_of_points()
+    for workload, config, (design, settings), seed in itertools.product(definition.workloads, definition.configs, chosen, definition.seeds):
+        takes_seed = _takes_seed(workload)
+        if not takes_seed and seed != definition.seeds[0]:
+            continue  # Only scenes have a seed.
+        options = sorted([*definition.options, *([f"--seed={seed}"] if takes_seed else [])])
+        texts = {key: text_of(key, value) for key, value in settings.items()}
+        found.append({"workload": workload, "config": config, "set": texts, "seed": seed if takes_seed else None, "options": options, "design": design, "values": settings})
+    return found
+
+
+def _takes_seed(workload: str) -> bool:
+    return pathlib.PurePath(workload).suffix.lower() in ("", ".obj", ".gltf", ".glb")
+
+
+def text_of(key: str, value: Any) -> str:
+    """Returns a value as `--set` takes it."""
+    value = value.item() if hasattr(value, "item") else value
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(json.dumps(one) if isinstance(one, str) else text_of(key, one) for one in value) + "]"
+    if isinstance(value, (str, int, float)):
+        return str(value)
+    raise SweepError(f"'{key}' is {value!r}: a number, a text, true or false is needed")
+
+
+def _within_constraints(definition: Definition, program: Program, raw: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    if not definition.constraints:
+        return raw
+    constraints = [Constraint(text) for text in definition.constraints]
+    asked = [{"workload": definition.workloads[0], "config": config, "oracles": definition.oracles, "all_keys": True} for config in definition.configs]
+    answers = ask(program, asked)[1:]
+    for config, answer in zip(definition.configs, answers):
+        if "error" in answer:
+            raise SweepError(f"config {config}: {answer['error']}")
+    bases = {config: {key: number_of(text) for key, text in answer["keys"].items()} for config, answer in zip(definition.configs, answers)}
+    kept = []
+    for one in raw:
+        values = {**bases[one["config"]], **one["values"], "workload": one["workload"], "config": one["config"], "seed": one["seed"]}
+        if all(constraint.holds(values) for constraint in constraints):
+            kept.append(one)
+    return kept
+
+
+def number_of(text: Any) -> Any:
+    """Returns the number, truth or text that the text of a value stands for."""
+    if not isinstance(text, str):
+        return text
+    if text in ("true", "false"):
+        return text == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text.strip('"')
+
+
+def _answers(program: Program, asked: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    slices = [asked[i:i + _SLICE] for i in range(0, len(asked), _SLICE)]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        return [answer for part in pool.map(lambda one: ask(program, one)[1:], slices) for answer in part]
+
+
+def _refuse(points: list[dict[str, Any]], answers: Iterable[dict[str, Any]]) -> None:
+    wrong: dict[str, list[str]] = {}
+    for point, answer in zip(points, answers):
+        if "error" in answer:
+            wrong.setdefault(answer["error"], []).append(title_of(point))
+    if not wrong:
+        return
+    count = sum(map(len, wrong.values()))
+    lines = [f"{count} of {len(points)} points are wrong, so nothing was run:"]
+    for message, titles in list(wrong.items())[:_SHOWN]:
+        more = f" (and {len(titles) - 1} more)" if len(titles) > 1 else ""
+        lines += [f"  {titles[0]}{more}", *(f"    {line}" for line in message.splitlines())]
+    if len(wrong) > _SHOWN:
+        lines.append(f"  ... and {len(wrong) - _SHOWN} other messages")
+    raise SweepError("\n".join(lines))
+
+
+def title_of(point: dict[str, Any]) -> str:
+    """Returns a point in words: workload, configuration, settings, seed."""
+    settings = " ".join(f"{key}={value}" for key, value in point["set"].items())
+    seed = f" seed={point['seed']}" if point.get("seed") not in (None, 1) else ""
+    return f"{pathlib.PurePath(point['workload']).name} on {pathlib.PurePath(point['config']).name}{' ' if settings else ''}{settings}{seed}"
+
+
+class _Contents:
+    """Names files by their contents. Each is read once."""
+
+    def __init__(self, program: Program):
+        self.program = [program.hash, program.facts["shaders"], program.facts["plugins"]]
+        self._known: dict[str, Any] = {}
+
+    def workload(self, name: str) -> Any:
+        return self._known.setdefault(name, self._contents(name) or name)
+
+    def options(self, words: list[str]) -> list[Any]:
+        out = []
+        for word in words:
+            option, _, value = word.partition("=")
+            if word not in self._known:
+                found = self._contents(value) if value else None
+                self._known[word] = [option, found] if found else word
+            out.append(self._known[word])
+        return out
+
+    def _contents(self, name: str) -> Any:
+        path = pathlib.Path(name)
+        if path.is_dir():
+            return [[str(one.relative_to(path)), file_hash(one)] for one in sorted(path.rglob("*")) if one.is_file()]
+        return [[one.name, file_hash(one)] for one in files_of(path)] if path.is_file() else None

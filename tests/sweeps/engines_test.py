@@ -1,0 +1,179 @@
+# Tests that a sweep on Slurm, on Dask and on Python's executors leaves the bytes of the local pool, also when workers and submitters are killed.
+# SPDX-License-Identifier: Apache-2.0
+"""usage: engines_test.py GLINT SOURCE_DIR [Slurm|Dask|Executors]. Slurm and Dask are started for real; a test skips where they are not installed."""
+import concurrent.futures
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import one_node_slurm
+from sweeps_case import SKIPPED, SweepTest, contents, main, need, points_in
+
+SWEEP = """
+name = "sixty"
+workloads = ["WKND_SH", "SHIP_SH"]
+[run]
+size = "16x16"
+spp = 1
+[[design]]
+keys = { rt.warps = [1, 2, 3, 4, 6, 8], core.warps = [8, 12, 16, 24, 32] }
+"""
+
+
+class EngineTest(SweepTest):
+    """Compares stores with that of the local pool, which is filled once."""
+
+    @classmethod
+    def setUpClass(cls):
+        import glint.sweeps
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        path = pathlib.Path(folder.name) / "sweep.toml"
+        path.write_text(SWEEP)
+        glint.sweeps.run(path, pathlib.Path(folder.name) / "store")
+        cls.wanted = contents(pathlib.Path(folder.name) / "store")
+
+    def setUp(self):
+        super().setUp()
+        self.write(SWEEP)
+        self.store = self.folder / "store"
+
+    def some(self, count):
+        self.until(lambda: len(points_in(self.store)) >= count)
+
+    def all_are_those_of_the_local_pool(self):
+        self.assertEqual(len(self.wanted), 60)
+        found = contents(self.store)
+        self.assertEqual(set(found), set(self.wanted))
+        self.assertEqual([id for id in found if found[id] != self.wanted[id]], [])
+
+
+class Slurm(EngineTest):
+    @classmethod
+    def setUpClass(cls):
+        if reason := one_node_slurm.missing():
+            print(f"SKIPPED: engines_test.py Slurm: {reason}")
+            sys.stdout.flush()
+            os._exit(SKIPPED)
+        super().setUpClass()
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        os.chmod(folder.name, 0o755)
+        cls.slurm = one_node_slurm.OneNodeSlurm(pathlib.Path(folder.name) / "slurm")
+        cls.addClassCleanup(cls.slurm.stop)
+
+    def test_killed_tasks_a_requeued_one_and_a_killed_submitter_lose_nothing(self):
+        child = self.start("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "5")
+        self.some(6)
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+        self.until(self.slurm.tasks)
+        os.kill(self.slurm.tasks()[0], signal.SIGKILL)
+        running = next((line.split("|")[0] for line in self.slurm.jobs() if "RUNNING" in line), None)
+        if running:
+            subprocess.run(["scontrol", "requeue", running], check=False)
+        status = self.glint("status", "sweep.toml", "--store", "store").stdout
+        self.assertIn("60 points", status)
+        jobs = {line.split("|")[1] for line in self.slurm.jobs()}
+        self.assertTrue(all(name.startswith("glint-sixty-") for name in jobs), jobs)
+        self.glint("resume", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "5")
+        self.all_are_those_of_the_local_pool()
+        self.assertEqual(self.slurm.tasks(), [])
+
+    def test_detached_tasks_are_found_again_and_can_be_cancelled(self):
+        self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")
+        self.assertEqual(sum("glint-sixty" in line for line in self.slurm.jobs()), 6)
+        self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")  # submits nothing twice
+        self.assertEqual(sum("glint-sixty" in line for line in self.slurm.jobs()), 6)
+        self.glint("cancel", "sweep.toml", "--store", "store")
+        self.until(lambda: not any("glint-sixty" in line and "COMPLETING" not in line for line in self.slurm.jobs()))
+        self.until(lambda: not self.slurm.tasks())
+        kept = len(points_in(self.store))
+        self.assertLess(kept, 60)
+        self.glint("resume", "sixty", "--engine", "slurm", "--store", "store")
+        self.all_are_those_of_the_local_pool()
+
+    def test_ctrl_c_takes_all_tasks_back(self):
+        child = self.start("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "5")
+        self.some(1)
+        child.send_signal(signal.SIGINT)
+        self.assertEqual(child.wait(60), 130)
+        self.assertEqual(self.slurm.tasks(), [])
+        self.assertEqual([line for line in self.slurm.jobs() if "PENDING" in line or "RUNNING" in line], [])
+        self.assertEqual(list(self.folder.glob("store/tmp/*")), [])
+
+    def test_what_sbatch_refuses_is_told(self):
+        done = self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--slurm=--partition=nowhere", code=2)
+        self.assertIn("sbatch refused", done.stderr)
+        self.assertIn("nowhere", done.stderr)
+
+
+class Dask(EngineTest):
+    @classmethod
+    def setUpClass(cls):
+        need("distributed")
+        super().setUpClass()
+
+    def dask(self, name, *words):
+        child = subprocess.Popen([sys.executable, "-m", f"distributed.cli.dask_{name}", *map(str, words)], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(lambda: (child.terminate(), child.wait()))
+        return child
+
+    def worker(self):
+        return self.dask("worker", "--scheduler-file", self.folder / "scheduler.json", "--nthreads", 1, "--no-dashboard", "--local-directory", self.folder)
+
+    def test_killed_workers_and_a_killed_submitter_lose_nothing(self):
+        self.dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--no-dashboard", "--scheduler-file", self.folder / "scheduler.json")
+        self.until(lambda: (self.folder / "scheduler.json").exists())
+        workers = [self.worker() for _ in range(2)]
+        import json
+        address = json.loads((self.folder / "scheduler.json").read_text())["address"]
+        words = ("sweep.toml", "--engine", "dask", "--scheduler", address, "--store", "store", "--chunk", "2")
+        child = self.start("run", *words)
+        self.some(3)
+        workers[0].kill()
+        self.some(8)
+        child.kill()
+        child.wait()
+        workers.append(self.worker())
+        self.assertLess(len(points_in(self.store)), 60)
+        again = self.start("resume", *words)
+        self.some(25)
+        workers[1].kill()
+        self.assertEqual(again.wait(200), 0, again.stdout.read())
+        self.all_are_those_of_the_local_pool()
+
+    def test_a_cluster_on_this_machine_needs_no_address(self):
+        self.glint("run", "sweep.toml", "--engine", "dask", "--workers", 2, "--store", "store")
+        self.all_are_those_of_the_local_pool()
+
+    def test_no_scheduler_is_told(self):
+        done = self.glint("run", "sweep.toml", "--engine", "dask", "--scheduler", "tcp://127.0.0.1:9", "--store", "store", code=2)
+        self.assertIn("no Dask scheduler answers", done.stderr)
+
+
+class Executors(EngineTest):
+    def test_processes_of_python_run_a_sweep_and_may_be_killed(self):
+        source = random.Random(5)
+        with concurrent.futures.ProcessPoolExecutor(2) as executor:
+            for process in [executor.submit(os.getpid).result()]:
+                import threading
+                threading.Timer(source.uniform(1.5, 2.5), lambda: os.kill(process, signal.SIGKILL)).start()
+            found = self.sweeps.run(self.folder / "sweep.toml", self.store, engine=self.sweeps.Engine(executor=executor, chunk=4))
+        self.assertEqual({record["kind"] for record in found.failures}, {"lost"} if found.failures else set())
+        self.sweeps.run(self.folder / "sweep.toml", self.store, failed=True)
+        self.all_are_those_of_the_local_pool()
+
+    def test_threads_of_python_run_a_sweep(self):
+        with concurrent.futures.ThreadPoolExecutor(2) as executor:
+            self.sweeps.run(self.folder / "sweep.toml", self.store, engine=self.sweeps.Engine(executor=executor))
+        self.all_are_those_of_the_local_pool()
+
+
+if __name__ == "__main__":
+    main()
