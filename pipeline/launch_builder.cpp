@@ -49,7 +49,7 @@ void LaunchBuilder::bind_buffers(BindingPlace place, const std::vector<BufferRan
   static_assert(sizeof(BufferRange) == isa::kDescriptorBytes);
   const frontend::Binding* use = shaders_.declared_at(place);
   if (elements.empty()) return;
-  if (!use || use->count == 1) return write(place, elements[0].address, elements[0].bytes);
+  if (!use || !use->is_array) return write(place, elements[0].address, elements[0].bytes);
   std::vector<BufferRange> all = elements;
   if (all.size() < use->count) all.resize(use->count, unbound(place));
   const Address table = allocate(fmt::format("descriptors of set {} binding {}", place.first, place.second),

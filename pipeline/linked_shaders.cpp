@@ -39,7 +39,7 @@ LinkedShaders::LinkedShaders(std::vector<isa::Program> programs,
   image_ = exec::link(programs);
   for (const frontend::Binding& binding : declared) {
     frontend::Binding& kept = declared_.try_emplace({binding.set, binding.binding}, binding).first->second;
-    kept.count = std::max(kept.count, binding.count);
+    kept.count = std::max(kept.count, binding.count), kept.is_array |= binding.is_array;
   }
 }
 

@@ -127,6 +127,7 @@ Binding binding_of(const Module& module, const Variable& variable, const Decorat
   binding.set = d.set.value_or(0), binding.binding = d.binding.value_or(0);
   Id type = module.type(variable.type).element;
   if (module.type(type).kind == Type::Kind::Array || module.type(type).kind == Type::Kind::RuntimeArray) {
+    binding.is_array = true;
     binding.count = module.type(type).kind == Type::Kind::Array ? module.type(type).count : 0;
     type = module.type(type).element;
   }

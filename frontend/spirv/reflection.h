@@ -28,6 +28,7 @@ struct Binding {
   BindingKind kind = BindingKind::Other;
   std::string name;                             // name of the variable or of its block
   uint32_t count = 1;                           // array length; 0: runtime array
+  bool is_array = false;                        // An array of one descriptor lies in a table, too.
   BlockType block{};                            // of buffers
   isa::ImageShape shape = isa::ImageShape::D2;  // of images
   std::string texel{};                          // of images: "f32", "u32", "s32"

@@ -117,7 +117,7 @@ class Check {
         errors_.error(
             g->where,
             fmt::format("set {} binding {} element {} is bound twice", set, binding, g->slot->element),
-            use.binding.count == 1 ? "" : "elements of an array of descriptors are element = 0, 1, ...");
+            !use.binding.is_array ? "" : "elements of an array of descriptors are element = 0, 1, ...");
       if (use.binding.count && g->slot->element >= use.binding.count)
         errors_.error(g->where,
                       fmt::format("element {} of set {} binding {}: the shader's array has {}",

@@ -29,18 +29,27 @@ void main() {
 }
 )";
 
+constexpr const char* kArrayOfOne = R"(#version 460
+layout(local_size_x = 8) in;
+layout(set = 0, binding = 0) buffer Out { uint result[]; };
+layout(set = 0, binding = 1) buffer Single { uint value; } single[1];
+void main() { result[gl_GlobalInvocationID.x] = single[0].value; }
+)";
+
 // Stands for a host: it has memory, a compiled shader, and a pool of images of one texel.
 struct Host {
+  explicit Host(const char* text = kShader) : stage(compile(text)) {}
+
   GpuParams gpu;
-  CompiledStage stage = compile();
+  CompiledStage stage;
   LinkedShaders shaders{{stage.program}, stage.reflection.bindings, gpu, nullptr};
   mem::AddressSpace memory;
   exec::ImagePool pool;
   Address out = place(std::vector<uint32_t>(16));
 
-  static CompiledStage compile() {
+  static CompiledStage compile(const char* text) {
     Diagnostics notes;
-    return compile_stage(frontend::glsl_text_to_spirv(kShader, "sum.comp", isa::Stage::Compute, {}),
+    return compile_stage(frontend::glsl_text_to_spirv(text, "sum.comp", isa::Stage::Compute, {}),
                          {"sum.comp", "", {{3, 10}}}, {}, notes, nullptr);
   }
   Address place(const std::vector<uint32_t>& words) {
@@ -103,6 +112,15 @@ TEST_CASE("an image that nobody bound is a fault that names its place") {
   LaunchBuilder builder(host.shaders, host.memory, &host.pool);
   host.bind(builder, 0);
   CHECK_THROWS_WITH(host.run(builder.finish()), Contains("set 1 binding 0 (pictures)"));
+}
+
+TEST_CASE("an array of one buffer has a table, as every array has") {
+  Host host(kArrayOfOne);
+  LaunchBuilder builder(host.shaders, host.memory);
+  builder.bind_buffers({0, 0}, {{host.out, 64}});
+  builder.bind_buffers({0, 1}, {{host.place({5}), 4}});
+  builder.set_blocks(0, {2, 1, 1});
+  CHECK(host.run(builder.finish()) == 5);
 }
 
 TEST_CASE("an element of an array of buffers that nobody gave is a fault that names its place") {
