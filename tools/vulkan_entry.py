@@ -159,13 +159,14 @@ HEAD = """// Written by tools/vulkan_entry.py from the Vulkan registry and from 
 
 def entry_table(registry, extensions, folder):
     """Returns entry_table.cpp: declarations, trampolines, and the sorted table of names."""
-    sources = {}  # by name: the extension, or "" for the core
+    sources = {}  # by name: the extensions that bring it, or nothing for the core
     for feature in registry.features:
         for name in required(feature, "command", extensions):
-            sources.setdefault(name, "")
+            sources[name] = []
     for extension in extensions:
         for name in required(registry.extensions[extension], "command", extensions):
-            sources.setdefault(name, extension)
+            if sources.setdefault(name, [extension]):
+                sources[name] = sorted({*sources[name], extension})
     written = written_commands(registry, folder)
     used = {registry.command(name).name: registry.command(name) for name in sources}
     missing = sorted(n for n, e in sources.items() if e and registry.command(n).name not in written)
@@ -179,7 +180,7 @@ def entry_table(registry, extensions, folder):
     for name in sorted(sources):
         command = registry.command(name)
         function = f"PFN_vkVoidFunction(&call_{command.own_name()})"
-        out.append(f'    {{"{name}", {function}, Level::{command.level}, "{sources[name]}"}},\n')
+        out.append(f'    {{"{name}", {function}, Level::{command.level}, "{" ".join(sources[name])}"}},\n')
     out.append("};\n\n}  // namespace\n\n")
     out.append("std::span<const EntryPoint> entry_points() {\n  return kEntryPoints;\n}\n\n}  // namespace glint::vulkan\n")
     return "".join(out).replace("constexpr EntryPoint", "const EntryPoint")

@@ -24,11 +24,9 @@ void ask_for(Device& device, VkStructureType type, const void* members) {
 }  // namespace
 
 VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, VkDevice* out) {
-  for (uint32_t i = 0; i < info->enabledExtensionCount; ++i)
-    if (!is_announced(device_extensions(), info->ppEnabledExtensionNames[i]))
-      throw Refusal(VK_ERROR_EXTENSION_NOT_PRESENT,
-                    fmt::format("there is no device extension {}", info->ppEnabledExtensionNames[i]));
   auto made = std::make_unique<Device>(physical);
+  made->extensions = enabled_extensions(device_extensions(), info->ppEnabledExtensionNames,
+                                        info->enabledExtensionCount, "device");
   if (info->pEnabledFeatures)
     ask_for(*made, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, info->pEnabledFeatures);
   for (auto* each = static_cast<const VkBaseInStructure*>(info->pNext); each; each = each->pNext)

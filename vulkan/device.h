@@ -3,8 +3,10 @@
 #pragma once
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <set>
+#include <string>
 #include <string_view>
 
 #include "frontend/cache.h"
@@ -27,6 +29,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   std::mutex mutex;  // A command that is given this device, or its queue, holds it (guard.h).
   std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
+  std::set<std::string, std::less<>> extensions;  // that the application enabled
   glint::mem::AddressSpace memory;
   glint::vulkan::BufferParts parts;               // of `memory`
   glint::frontend::ShaderCache shader_cache{{}};  // in memory only

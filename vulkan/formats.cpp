@@ -48,6 +48,12 @@ VkImageUsageFlags usage_of(VkFormatFeatureFlags2 features) {
   if (features & VK_FORMAT_FEATURE_2_TRANSFER_DST_BIT) out |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   if (features & VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT) out |= VK_IMAGE_USAGE_SAMPLED_BIT;
   if (features & VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT) out |= VK_IMAGE_USAGE_STORAGE_BIT;
+  constexpr VkImageUsageFlags kOfPasses =
+      VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT;
+  if (features & VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BIT)
+    out |= kOfPasses | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  if (features & VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT)
+    out |= kOfPasses | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   return out;
 }
 
@@ -85,12 +91,17 @@ VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
   return out;
 }
 
-// Returns what the device pretends of images with a format: a universal queue has to have a format of depth
-// and stencil, and Dawn ends the process where there is none. An image with it cannot be made.
+// Returns what the device pretends of images with a format. A universal queue has to have formats of colour,
+// depth and stencil: Dawn ends the process where there is none. Images that both depth and stencil need
+// cannot be made.
 VkFormatFeatureFlags2 pretended_features_of(const PhysicalDevice& device, VkFormat format) {
-  return device.instance.settings.is_universal && format == VK_FORMAT_D32_SFLOAT_S8_UINT
-             ? VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT
-             : 0;
+  if (!device.instance.settings.is_universal) return 0;
+  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
+  const auto texels = format_of(format);
+  if (!texels) return 0;
+  if (is_depth(format)) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
+  return VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BIT |
+         (exec::is_integer(exec::info_of(*texels)) ? 0 : VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BLEND_BIT);
 }
 
 void GetPhysicalDeviceFormatProperties(PhysicalDevice& device, VkFormat format, VkFormatProperties* out) {
@@ -118,8 +129,10 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
                                              VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
                                              VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT;
   const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
-  const VkImageUsageFlags possible = usage_of(image_features_of(format));
-  const bool is_usable = possible && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
+  const VkImageUsageFlags possible =
+      usage_of(image_features_of(format) | pretended_features_of(device, format));
+  const bool is_usable =
+      image_features_of(format) && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
   if (!is_tiled || !is_usable || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkPhysicalDeviceLimits& limits = device.core.limits;
   const uint32_t width = type == VK_IMAGE_TYPE_1D   ? limits.maxImageDimension1D

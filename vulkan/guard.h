@@ -21,7 +21,7 @@ struct EntryPoint {
   std::string_view name;  // such as "vkCreateBuffer"
   PFN_vkVoidFunction function;
   Level level;
-  std::string_view extension;  // the extension that brings it; empty: the core
+  std::string_view extensions;  // Each of these brings it, with spaces between them; empty: the core
 };
 
 // Returns all commands, sorted by name. tools/vulkan_entry.py writes the table when Glint is built.

@@ -38,11 +38,9 @@ VkResult EnumerateInstanceLayerProperties(uint32_t* count, VkLayerProperties*) {
 }
 
 VkResult CreateInstance(const VkInstanceCreateInfo* info, VkInstance* out) {
-  for (uint32_t i = 0; i < info->enabledExtensionCount; ++i)
-    if (!is_announced(instance_extensions(), info->ppEnabledExtensionNames[i]))
-      throw Refusal(VK_ERROR_EXTENSION_NOT_PRESENT,
-                    fmt::format("there is no instance extension {}", info->ppEnabledExtensionNames[i]));
   auto made = std::make_unique<Instance>(settings());
+  made->extensions = enabled_extensions(instance_extensions(), info->ppEnabledExtensionNames,
+                                        info->enabledExtensionCount, "instance");
   if (const auto* messenger = find_in_chain<VkDebugUtilsMessengerCreateInfoEXT>(
           info, VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT)) {
     made->first_messenger = messenger_of(*messenger);
@@ -50,6 +48,16 @@ VkResult CreateInstance(const VkInstanceCreateInfo* info, VkInstance* out) {
   }
   *out = made.release();
   return VK_SUCCESS;
+}
+
+std::set<std::string, std::less<>> enabled_extensions(std::span<const VkExtensionProperties> announced,
+                                                      const char* const* names, uint32_t count,
+                                                      std::string_view whose) {
+  for (uint32_t i = 0; i < count; ++i)
+    if (!is_announced(announced, names[i]))
+      throw Refusal(VK_ERROR_EXTENSION_NOT_PRESENT,
+                    fmt::format("there is no {} extension {}", whose, names[i]));
+  return {names, names + count};
 }
 
 void DestroyInstance(Instance& instance) {

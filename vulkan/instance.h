@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -23,7 +25,8 @@ struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
 struct VkInstance_T : glint::vulkan::Dispatchable {
   explicit VkInstance_T(glint::vulkan::Settings asked) : settings(std::move(asked)) {}
 
-  const glint::vulkan::Settings settings;  // The device reads them when it is made.
+  const glint::vulkan::Settings settings;         // The device reads them when it is made.
+  std::set<std::string, std::less<>> extensions;  // that the application enabled
   glint::vulkan::Messages messages;
   VkDebugUtilsMessengerEXT_T first_messenger;  // of VkInstanceCreateInfo
   VkPhysicalDevice_T physical{*this};
@@ -44,5 +47,10 @@ VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_univers
 // Returns whether the device says that it has a feature.
 bool announces(const PhysicalDevice& device, const Feature& feature);
 DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset);
+// Returns the extensions that an application enables. Throws Refusal for one that is not announced; `whose`
+// is "instance" or "device".
+std::set<std::string, std::less<>> enabled_extensions(std::span<const VkExtensionProperties> announced,
+                                                      const char* const* names, uint32_t count,
+                                                      std::string_view whose);
 
 }  // namespace glint::vulkan

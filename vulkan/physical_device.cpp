@@ -79,7 +79,7 @@ void GetPhysicalDeviceMemoryProperties(PhysicalDevice&, VkPhysicalDeviceMemoryPr
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   for (const VkMemoryPropertyFlags flags :
        {VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT),
-        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT})
+        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT})
     out->memoryTypes[out->memoryTypeCount++] = {flags, 0};
   out->memoryHeapCount = 1;
   out->memoryHeaps[0] = {kHeapBytes, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};

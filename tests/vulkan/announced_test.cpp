@@ -30,6 +30,14 @@ struct Answers {
   }
 };
 
+TEST_CASE("a device gives the commands of an extension when it is enabled", "[portable]") {
+  const Client without;
+  CHECK(without.load<PFN_vkVoidFunction>("vkCmdPushDescriptorSetKHR") == nullptr);
+  CHECK(without.load<PFN_vkVoidFunction>("vkCmdDispatch") != nullptr);
+  const Client with({.extensions = {"VK_KHR_push_descriptor"}});
+  CHECK(with.load<PFN_vkVoidFunction>("vkCmdPushDescriptorSetKHR") != nullptr);
+}
+
 TEST_CASE("a device that says Vulkan 1.3 has its required features", "[portable]") {
   const Client client;
   const Answers has(client.physical);

@@ -87,7 +87,7 @@ class Client {
   VkResult dispatch(const ComputePipeline& pipeline, VkDescriptorSet set, std::array<uint32_t, 3> groups,
                     const std::vector<uint32_t>& push_constants = {});
   template <class Function>
-  Function load(const char* name) {
+  Function load(const char* name) const {
     return reinterpret_cast<Function>(vkGetDeviceProcAddr(device, name));
   }
 

@@ -29,7 +29,7 @@ REGISTRY = """<registry>
 <extensions>
   <extension name="VK_KHR_thing" type="device" requires="VK_KHR_base" supported="vulkan"><require>
     <enum value="7" name="VK_KHR_THING_SPEC_VERSION"/><command name="vkCreateThingKHR"/><type name="VkNewFeatures"/></require></extension>
-  <extension name="VK_KHR_base" type="device" supported="vulkan"><require><enum value="1" name="VK_KHR_BASE_SPEC_VERSION"/>
+  <extension name="VK_KHR_base" type="device" supported="vulkan"><require><enum value="1" name="VK_KHR_BASE_SPEC_VERSION"/><command name="vkCreateThingKHR"/>
     </require></extension>
 </extensions>
 </registry>"""
@@ -55,6 +55,12 @@ class EntryTable(unittest.TestCase):
         self.assertEqual(rows, [['    {"vkCreateThing"', "PFN_vkVoidFunction(&call_CreateThing)"],
                                 ['    {"vkCreateThingKHR"', "PFN_vkVoidFunction(&call_CreateThing)"],
                                 ['    {"vkDoNothing"', "PFN_vkVoidFunction(&call_DoNothing)"]])
+
+    def test_a_command_knows_every_extension_that_brings_it(self):
+        _, texts = self.generate(BOTH)
+        self.assertIn('{"vkCreateThing", PFN_vkVoidFunction(&call_CreateThing), Level::OfDevice, ""}', texts["entry_table.cpp"])
+        self.assertIn('{"vkCreateThingKHR", PFN_vkVoidFunction(&call_CreateThing), Level::OfDevice, "VK_KHR_base VK_KHR_thing"}',
+                      texts["entry_table.cpp"])
 
     def test_a_written_command_is_guarded_and_another_says_that_it_is_not_there(self):
         _, texts = self.generate(BOTH)
