@@ -21,8 +21,8 @@ def without(words, option):
 
 
 def is_scene(words):
-    """Returns whether `glint run` names a scene or workload: something that is not a file, or a model."""
-    return bool(words) and ("." not in words[0] or words[0].endswith((".obj", ".gltf", ".glb")))
+    """Returns whether `glint run` names a scene or workload: something that is not a file, or a model. Programs have small letters."""
+    return bool(words) and (("." not in words[0] and not words[0].islower()) or words[0].endswith((".obj", ".gltf", ".glb")))
 
 
 def reduced(words):

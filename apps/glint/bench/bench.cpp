@@ -104,6 +104,17 @@ class Bench {
     limits_.memory = options_.memory > 0 ? uint64_t(options_.memory * 1e9) : available;
   }
 
+  // Returns what the workloads run on: the frame of scenes, the size of the programs' inputs.
+  std::string inputs() const {
+    const auto has = [&](bool program) {
+      return std::ranges::any_of(
+          plan_.tasks, [&](const BenchTask& task) { return task.workload.is_program() == program; });
+    };
+    return (has(false) ? fmt::format("{}, {} spp, ", options_.frame.size, options_.frame.params.samples)
+                       : "") +
+           (has(true) ? options_.small ? "small inputs, " : "full inputs, " : "");
+  }
+
   void announce() const {
     uint64_t largest = 0, together = 0;
     std::string name;
@@ -116,10 +127,9 @@ class Bench {
     std::sort(needs.rbegin(), needs.rend());
     for (size_t i = 0; i < std::min<size_t>(needs.size(), limits_.processes); ++i) together += needs[i];
     print_output(
-        "{} workloads{}: {}, {} spp, {} on {}, {} at a time, into {}\n", plan_.tasks.size(),
+        "{} workloads{}: {}{} on {}, {} at a time, into {}\n", plan_.tasks.size(),
         options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "",
-        options_.frame.size, options_.frame.params.samples, options_.mode, options_.config, limits_.processes,
-        plan_.directory);
+        inputs(), options_.mode, options_.config, limits_.processes, plan_.directory);
     if (chosen_.empty()) return;
     print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest),
                  name, gigabytes(together), limits_.memory ? gigabytes(limits_.memory) : "not known");

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "compute/program.h"
+
 namespace glint::app {
 namespace {
 
@@ -41,8 +43,9 @@ constexpr SceneNeeds kNeeds[] = {
 constexpr double kProgram = 150e6;  // bytes without a scene
 // These are the bytes of a triangle: geometry, its copies while it is built and uploaded, structures.
 constexpr double kPerTriangle = 200;
-constexpr double kFromFiles = 2;  // guess: the text, and the vertices before they are merged
-constexpr double kPerPixel = 64;  // bytes: pictures and their copies
+constexpr double kFromFiles = 2;          // guess: the text, and the vertices before they are merged
+constexpr double kPerPixel = 64;          // bytes: pictures and their copies
+constexpr double kFunctionalSpeedUp = 5;  // of the functional machine, about
 
 // Returns the needs of a scene. A scene that is not in the table is taken to need as much as the largest one,
 // because too much is safer than too little.
@@ -66,6 +69,14 @@ uint64_t number_in(const std::string& path, const std::string& name = {}) {
 
 }  // namespace
 
+uint64_t memory_estimate(const compute::Program& program, bool small) {
+  return uint64_t(kProgram + (small ? 0 : program.full_megabytes * 1e6));
+}
+
+double time_weight(const compute::Program& program, bool small, bool timing) {
+  return (small ? program.small_seconds : program.full_seconds) / (timing ? 1 : kFunctionalSpeedUp);
+}
+
 uint64_t memory_estimate(const NamedWorkload& workload, uint64_t pixels, bool from_files) {
   const SceneNeeds& needs = needs_of(workload.scene);
   return uint64_t(kProgram + kPerTriangle * (from_files ? kFromFiles : 1) * needs.triangles +
@@ -77,8 +88,7 @@ double time_weight(const NamedWorkload& workload, bool timing, uint64_t pixels, 
   const double loading = 0.6e-6 * needs.triangles + 0.1;
   const double measured = workload.shader == "pt" ? needs.pt : workload.shader == "sh" ? needs.sh : needs.ao;
   const double simulating = std::max(0.1, measured - loading) * double(pixels * samples) / (128 * 128 * 2);
-  return loading +
-         (timing ? simulating : simulating / 5);  // The functional machine is about five times faster.
+  return loading + (timing ? simulating : simulating / kFunctionalSpeedUp);
 }
 
 uint64_t available_memory() {

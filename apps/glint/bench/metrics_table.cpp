@@ -66,7 +66,7 @@ MetricsTable::MetricsTable(const std::string& folder, const std::set<std::string
 std::string MetricsTable::text() const {
   std::string out = report::metrics_header();
   std::map<std::string, std::string> others = rows_;
-  for (const NamedWorkload& workload : lumibench())
+  for (const NamedWorkload& workload : all_workloads())
     if (const auto found = others.extract(workload.name())) out += found.mapped();
   for (const auto& [name, row] : others) out += row;
   return out;

@@ -16,7 +16,7 @@ class MetricsTable {
 
   bool is_new() const { return is_new_; }  // The folder has no metrics.csv yet.
   void set(const std::string& workload, const std::string& row) { rows_[workload] = row; }
-  // Returns the file: all rows in the order of lumibench(), and behind them those of unknown workloads.
+  // Returns the file: all rows in the order of all_workloads(), and behind them those of unknown workloads.
   std::string text() const;
 
  private:

@@ -35,12 +35,13 @@ std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const std::string text = fmt::format(
       "config {:016x} mode {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{} "
-      "stats {}",
+      "stats {} small {}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode,
       fmt::join(options.frame.arguments(), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
       report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
-      identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "), options.stats);
+      identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "), options.stats,
+      options.small);
   return fmt::format("{:016x}", report::fnv1a(text));
 }
 
@@ -71,13 +72,43 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
                                   fmt::format("--threads={}", options.threads),
                                   "--out=" + task.directory};
   for (const Plugin& plugin : session.plugins) out.push_back("--plugin=" + plugin.path);
-  for (const std::string& option : options.frame.arguments()) out.push_back(option);
+  if (!task.workload.is_program())
+    for (const std::string& option : options.frame.arguments()) out.push_back(option);
+  else if (options.small)
+    out.push_back("--small");
   out.push_back("--stats=" + options.stats);
   if (options.max_cycles > 0) out.push_back(fmt::format("--max-cycles={}", options.max_cycles));
   for (const std::string& option : observe_arguments(options.observe)) out.push_back(option);
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
   return out;
+}
+
+// Refuses options that have no meaning for any or for one of the workloads.
+void check_kinds(const BenchOptions& options, const std::vector<NamedWorkload>& workloads) {
+  const auto programs = std::count_if(workloads.begin(), workloads.end(),
+                                      [](const NamedWorkload& workload) { return workload.is_program(); });
+  if (options.small && programs == 0)
+    throw UserError({}, "--small belongs to compute programs, and the bench has none",
+                    "`glint bench compute --small` runs them all");
+  if (const std::string given = options.frame.given(); !given.empty() && programs == ssize(workloads))
+    throw UserError({}, given + " belongs to scenes, and the bench has none",
+                    "compute programs have a full input, and a small one with --small");
+  if (observes(options.observe) && programs > 0)
+    throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with compute programs",
+                    "they belong to one launch, and a program may have many");
+}
+
+void estimate(const BenchOptions& options, uint64_t pixels, uint64_t samples, BenchTask& task) {
+  const bool timing = options.mode == "timing";
+  if (task.workload.is_program()) {
+    const compute::Program& program = *compute::find_program(task.workload.scene);
+    task.process.memory = memory_estimate(program, options.small);
+    task.process.weight = time_weight(program, options.small, timing);
+  } else {
+    task.process.memory = memory_estimate(task.workload, pixels, !options.assets.empty());
+    task.process.weight = time_weight(task.workload, timing, pixels, samples);
+  }
 }
 
 }  // namespace
@@ -101,6 +132,7 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   const std::vector<std::string> names =
       options.names.empty() ? std::vector<std::string>{"lumibench"} : options.names;
   const std::vector<NamedWorkload> workloads = select_workloads(names);
+  check_kinds(options, workloads);
   plan.key = key_of(session, options);
   plan.directory =
       options.out.empty() ? "out/bench-" + fs::path(options.config).stem().string() : options.out;
@@ -109,8 +141,7 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
     BenchTask task{workload, plan.directory + "/" + workload.name(), {}};
     task.process.arguments = command_of(session, options, task);
     task.process.log = task.directory + "/log.txt";
-    task.process.memory = memory_estimate(workload, pixels, !options.assets.empty());
-    task.process.weight = time_weight(workload, options.mode == "timing", pixels, frame.samples);
+    estimate(options, pixels, frame.samples, task);
     task.is_complete = options.resume && is_complete(task, plan.key);
     plan.tasks.push_back(std::move(task));
   }

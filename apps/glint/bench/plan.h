@@ -18,6 +18,7 @@ struct BenchOptions {
   std::string config = "mobile", mode = "timing", assets, out;
   std::vector<std::string> settings, oracles;  // KEY=VALUE, and as --oracle names them
   FrameOptions frame;
+  bool small = false;                   // Compute programs run on their small input.
   uint32_t processes = 0, threads = 1;  // processes 0: one for each of the host's processors
   double memory = 0;                    // GB that all processes may take together; 0: what is available
   bool resume = false;

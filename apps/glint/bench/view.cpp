@@ -13,7 +13,7 @@
 namespace glint::app {
 namespace {
 
-constexpr int kNameWidth = 9;  // "SPRNG_PT"
+constexpr int kNameWidth = 13;  // "streamcluster"
 constexpr int kBarWidth = 24;
 
 // Returns one metric of docs/metrics.md as text, or "" when the run does not have it.
@@ -40,6 +40,12 @@ std::string gigabytes(uint64_t bytes) {
 
 std::string figures_of(const report::RunRecord& run) {
   const std::vector<report::MetricValue> metrics = report::metrics_of(run);
+  const bool has_rays = report::evaluate("sum(gpu.rays)", run).value_or(0) > 0;
+  if (!has_rays)
+    return run.text("mode") == "functional"
+               ? whole(metrics, "w_icount") + " warp instructions"
+               : fmt::format("{:>11} cycles  thread IPC {:>6}", whole(metrics, "cycles"),
+                             shown(metrics, "thread_ipc", 1));
   if (run.text("mode") == "functional") {
     const std::optional<double> nodes = report::evaluate("sum(gpu.nodes) / sum(gpu.rays)", run);
     return fmt::format("{} rays{}",

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "base/diagnostics.h"
+#include "compute/program.h"
 #include "scenes/scene.h"
 
 namespace glint::app {
@@ -26,7 +27,17 @@ std::string upper(std::string_view text) {
   return out;
 }
 
+// Returns the candidate nearest to `name` in any case of letters, or "".
+std::string nearest_in_any_case(const std::string& name, const std::vector<std::string>& candidates) {
+  std::vector<std::string> uppers;
+  for (const std::string& candidate : candidates) uppers.push_back(upper(candidate));
+  const std::string guess = nearest(upper(name), uppers);
+  const auto found = std::find(uppers.begin(), uppers.end(), guess);
+  return found == uppers.end() ? "" : candidates[size_t(found - uppers.begin())];
+}
+
 bool is_called(const NamedWorkload& workload, const std::string& name) {
+  if (workload.is_program()) return name == "COMPUTE" || name == upper(workload.scene);
   return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene ||
          name == upper(workload.shader) || name == workload.name();
 }
@@ -45,7 +56,7 @@ const WorkloadInfo& find_workload(const std::string& name) {
 }
 
 std::string NamedWorkload::name() const {
-  return std::string(scene) + "_" + upper(shader);
+  return is_program() ? std::string(scene) : std::string(scene) + "_" + upper(shader);
 }
 
 std::vector<NamedWorkload> lumibench() {
@@ -60,20 +71,27 @@ std::vector<NamedWorkload> lumibench() {
   return out;
 }
 
+std::vector<NamedWorkload> all_workloads() {
+  std::vector<NamedWorkload> out = lumibench();
+  for (const compute::Program& program : compute::all_programs()) out.push_back({program.name, ""});
+  return out;
+}
+
 std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names) {
-  const std::vector<NamedWorkload> all = lumibench();
+  const std::vector<NamedWorkload> all = all_workloads();
   std::vector<bool> chosen(all.size(), false);
   for (const std::string& name : names) {
     bool found = false;
     for (size_t i = 0; i < all.size(); ++i)
       if (is_called(all[i], upper(name))) chosen[i] = found = true;
     if (found) continue;
-    std::vector<std::string> known = {"lumibench", "subset"};
+    std::vector<std::string> known = {"lumibench", "subset", "compute"};
     for (const std::string_view scene : kScenes) known.emplace_back(scene);
     for (const NamedWorkload& workload : all) known.push_back(workload.name());
-    const std::string guess = nearest(upper(name), known);
+    const std::string guess = nearest_in_any_case(name, known);
     throw UserError({}, "there is no workload or suite '" + name + "'",
-                    guess.empty() ? "'glint list workloads' names them; suites are lumibench and subset"
+                    guess.empty() ? "'glint list workloads' and 'glint list programs' name them; suites are "
+                                    "lumibench, subset and compute"
                                   : "did you mean '" + guess + "'?");
   }
   std::vector<NamedWorkload> out;

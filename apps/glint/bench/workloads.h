@@ -1,5 +1,5 @@
-// Lists what can be run by name: the shader sets, and LumiBench's 46 workloads, each a scene with a shader
-// set.
+// Lists what can be run by name: the shader sets, LumiBench's 46 workloads, each a scene with a shader set,
+// and the compute programs.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
@@ -28,11 +28,12 @@ inline constexpr std::array<WorkloadInfo, 3> kWorkloads{{
 // Returns the shader set of that name. Throws UserError with the nearest name when there is none.
 const WorkloadInfo& find_workload(const std::string& name);
 
-// Names a workload as the paper does: SHIP_SH.
+// Names a workload as the paper does: SHIP_SH. A compute program has its own name alone.
 struct NamedWorkload {
-  std::string_view scene;   // "SHIP"
-  std::string_view shader;  // "sh"
+  std::string_view scene;   // "SHIP", or "bfs"
+  std::string_view shader;  // "sh", or "" for a compute program
   bool in_subset = false;   // It is in the paper's Table 2.
+  bool is_program() const { return shader.empty(); }
   std::string name() const;
 };
 
@@ -40,9 +41,12 @@ struct NamedWorkload {
 // only pt.
 std::vector<NamedWorkload> lumibench();
 
-// Returns the workloads that the given names stand for. A name is that of a suite (`lumibench`, `subset`), a
-// scene, a shader set or a workload, in any case of letters. Each workload appears once, in the order of
-// lumibench(). Throws UserError with the nearest name for an unknown name.
+// Returns those, and the programs of the compute suite behind them.
+std::vector<NamedWorkload> all_workloads();
+
+// Returns the workloads that the given names stand for. A name is that of a suite (`lumibench`, `subset`,
+// `compute`), a scene, a shader set or a workload, in any case of letters. Each workload appears once, in the
+// order of all_workloads(). Throws UserError with the nearest name for an unknown name.
 std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names);
 
 // Holds scene and shader set of a name like SHIP_SH. Every scene may stand with every set.

@@ -16,10 +16,14 @@ namespace glint::app {
 
 void add_bench(Command app, Session& session) {
   auto options = std::make_shared<BenchOptions>();
-  Command command = app.add_subcommand("bench", "Run workloads of LumiBench and gather their metrics");
-  command.add_option("NAMES", options->names,
-                     "What to run: lumibench (all 46, the default), subset (8), a scene, pt, sh, ao, or "
-                     "workloads; 'glint list workloads' names them");
+  Command command =
+      app.add_subcommand("bench", "Run workloads of LumiBench or compute programs, and gather their metrics");
+  command.add_option(
+      "NAMES", options->names,
+      "What to run: lumibench (all 46, the default), subset (8), compute (all programs), a scene, "
+      "pt, sh, ao, workloads or programs; 'glint list workloads' and 'glint list programs' "
+      "name them");
+  command.add_flag("--small", options->small, "Run compute programs on their small inputs");
   command
       .add_option("-j,--jobs", options->processes,
                   "Number of processes that run at a time; 0: one for each processor")

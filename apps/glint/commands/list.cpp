@@ -1,5 +1,5 @@
-// Declares `glint list WHAT`: scenes, materials, shaders, workloads, configs, policies, oracles, ops, stats,
-// metrics.
+// Declares `glint list WHAT`: scenes, materials, shaders, workloads, programs, configs, policies, oracles,
+// ops, stats, metrics.
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
@@ -10,6 +10,7 @@
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
 #include "base/registry.h"
+#include "compute/program.h"
 #include "isa/op_row.h"
 #include "isa/op_tests.h"
 #include "report/metrics/metrics.h"
@@ -42,6 +43,14 @@ Rows workload_rows() {
   for (const NamedWorkload& workload : lumibench())
     rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader),
                     workload.in_subset ? "subset" : ""});
+  return rows;
+}
+
+Rows program_rows() {
+  Rows rows;
+  for (const compute::Program& program : compute::all_programs())
+    rows.push_back({std::string(program.name), std::string(program.doc), std::string(program.full_input),
+                    std::string(program.small_input)});
   return rows;
 }
 
@@ -143,6 +152,7 @@ Exit list(const Session& session, const ListOptions& options) {
                     : what == "materials" ? material_rows(scene, assets)
                     : what == "shaders"   ? shader_rows()
                     : what == "workloads" ? workload_rows()
+                    : what == "programs"  ? program_rows()
                     : what == "configs"   ? config_rows(session.resources)
                     : what == "oracles"   ? oracle_rows()
                     : what == "ops"       ? (tests ? test_rows() : op_rows())
@@ -158,11 +168,12 @@ void add_list(Command app, Session& session) {
   auto options = std::make_shared<ListOptions>();
   Command command = app.add_subcommand(
       "list",
-      "List scenes, materials, shaders, workloads, configs, policies, oracles, ops, stats or metrics");
+      "List scenes, materials, shaders, workloads, programs, configs, policies, oracles, ops, stats or "
+      "metrics");
   command.add_option("WHAT", options->what, "What to list")
       .required()
-      .one_of({"scenes", "materials", "shaders", "workloads", "configs", "policies", "oracles", "ops",
-               "stats", "metrics"});
+      .one_of({"scenes", "materials", "shaders", "workloads", "programs", "configs", "policies", "oracles",
+               "ops", "stats", "metrics"});
   command.add_option("SCENE", options->scene, "Scene or file whose materials to list (with materials)");
   command.add_option("--assets", options->assets, "Folder that has the original scene data (with materials)")
       .type_name("DIR")

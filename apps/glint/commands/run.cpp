@@ -8,6 +8,7 @@
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/amber.h"
+#include "apps/glint/run/compute.h"
 #include "apps/glint/run/pipeline.h"
 #include "apps/glint/run/ptx.h"
 #include "apps/glint/run/scene.h"
@@ -22,15 +23,19 @@ struct RunOptions {
   std::string kernel_launch;      // launch file of a kernel
   std::vector<std::string> more;  // Amber scripts after the first
   bool strict = false;            // for Amber scripts
+  bool small = false;             // for compute programs
 };
 
 // Refuses options that only scenes understand.
 void check_scene_options(const RunOptions& options) {
   const std::string &what = options.scene.scene, option = options.scene.given();
-  if (option.empty() || (!names_script(what) && !names_pipeline(what) && !names_kernel(what))) return;
+  if (option.empty() ||
+      (!names_script(what) && !names_pipeline(what) && !names_kernel(what) && !names_program(what)))
+    return;
   throw UserError({}, fmt::format("{} belongs to scenes, and '{}' is none", option, what),
                   option == "--exr" ? "a pipeline keeps a picture with save = \"NAME.exr\" under [[image]]"
-                                    : "what a pipeline, a kernel or a script renders stands in its file");
+                  : names_program(what) ? "its input is the full one, or the small one with --small"
+                                        : "what a pipeline, a kernel or a script renders stands in its file");
 }
 
 Exit run(const Session& session, const RunOptions& options) {
@@ -53,6 +58,10 @@ Exit run(const Session& session, const RunOptions& options) {
   if (!options.more.empty())
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
                     "only Amber scripts can be run several at a time");
+  if (names_program(what)) return run_program(session, what, options.small, options.launch);
+  if (options.small)
+    throw UserError({}, fmt::format("--small belongs to compute programs, and '{}' is none", what),
+                    "'glint list programs' names them");
   if (names_pipeline(what)) return run_pipeline(session, what, options.launch);
   if (names_kernel(what)) return run_ptx(session, what, options.kernel_launch, options.launch);
   return run_scene(session, options.scene, options.launch);
@@ -62,7 +71,8 @@ void add_scene_options(Command command, RunOptions& options) {
   command
       .add_option("SCENE", options.scene.scene,
                   "What to run: a scene ('glint list scenes' names them), a workload (SHIP_SH), a scene of "
-                  "your own (FILE.obj, FILE.gltf, FILE.glb), a pipeline (FILE.toml, or one shader file), a "
+                  "your own (FILE.obj, FILE.gltf, FILE.glb), a compute program ('glint list programs' names "
+                  "them), a pipeline (FILE.toml, or one shader file), a "
                   "kernel (FILE.ptx, or its launch FILE.toml) or an Amber script (FILE.amber)")
       .required();
   command.add_option("MORE", options.more, "More Amber scripts to run after the first one");
@@ -86,6 +96,7 @@ void add_scene_options(Command command, RunOptions& options) {
       "--strict", options.strict,
       "Let accesses outside of buffers and images be faults in Amber scripts that do not declare "
       "robust access");
+  command.add_flag("--small", options.small, "Run a compute program on its small input");
   command.add_flag("--exr", options.scene.exr,
                    "Also write the picture of a scene as image.exr: floats of 32 bits, with transparency");
   command.add_flag("--instancing", options.scene.instancing,

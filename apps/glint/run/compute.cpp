@@ -1,0 +1,107 @@
+// Runs a compute program and leaves the sum of its launches, and a table of them.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/compute.h"
+
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/recorded_run.h"
+#include "compute/host.h"
+#include "report/files/config_file.h"
+#include "report/files/run_directory.h"
+#include "report/terminal/table.h"
+
+namespace glint::app {
+namespace {
+
+constexpr const char* kLaunches = "launches.csv";
+
+std::string launch_table(const std::vector<compute::LaunchRecord>& launches) {
+  std::string out = "launch,kernel,groups_x,groups_y,groups_z,cycles,warp_instructions,lane_instructions\n";
+  for (size_t i = 0; i < launches.size(); ++i) {
+    const compute::LaunchRecord& launch = launches[i];
+    const auto& [x, y, z] = launch.groups;
+    out += fmt::format("{},{},{},{},{},{},{},{}\n", i, launch.kernel, x, y, z, launch.cycles,
+                       launch.warp_instructions, launch.lane_instructions);
+  }
+  return out;
+}
+
+void check_options(const std::string& name, const LaunchOptions& options) {
+  if (observes(options.observe))
+    throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with compute programs",
+                    "they belong to one launch, and '" + name + "' may have many");
+  if (!options.shaders.include_dirs.empty() || !options.shaders.defines.empty())
+    throw UserError({}, "-I and -D cannot be used with compute programs", "their kernels take no macros");
+  check_max_cycles(options.max_cycles, options.mode == "timing");
+}
+
+report::RunInfo describe_run(const Session& session, const compute::Program& program,
+                             const std::string& input, const pipeline::GpuParams& gpu,
+                             const LaunchOptions& options) {
+  report::RunInfo info = new_run_info(session, gpu, options.config, options.mode);
+  info.scene = program.name;
+  info.scene_form = "compute";
+  info.scene_note = input;
+  info.scene_hash = report::fnv1a(input);
+  info.shader = program.name;
+  info.on_fault = exec::name_of(options.on_fault);
+  info.compact = options.compact();
+  info.saved = {kLaunches};
+  return info;
+}
+
+}  // namespace
+
+bool names_program(const std::string& what) {
+  return compute::find_program(what) != nullptr;
+}
+
+Exit run_program(const Session& session, const std::string& what, bool small, const LaunchOptions& options) {
+  check_options(what, options);
+  const compute::Program& program = *compute::find_program(what);
+  const std::string input(small ? program.small_input : program.full_input);
+  pipeline::RenderJob job;
+  job.gpu = gpu_of(session.resources, options);
+  job.timing = options.mode == "timing";
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
+  exec::PrintLog prints(options.print_limit);
+
+  const std::string title =
+      fmt::format("{}  {}, {} on {}", program.name, input, options.mode, options.config);
+  report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", what, options.mode)
+                                                     : options.out);
+  report::RunInfo info = describe_run(session, program, input, job.gpu, options);
+  begin_directory(directory, info, job.gpu, title);
+  compute::ProgramResult done;
+  const pipeline::RenderResult result = run_recorded(
+      session, options.max_cycles, directory, info,
+      [&](const pipeline::LaunchWatch& watch) {
+        done =
+            compute::run_program(program, small ? compute::Size::Small : compute::Size::Full,
+                                 {job.gpu,
+                                  session.resources.shader_dir("compute"),
+                                  {job.timing, options.no_skip, options.threads, pipeline::Caches::Warm, {}},
+                                  watch,
+                                  cache.get(),
+                                  options.on_fault,
+                                  &prints});
+        return std::move(done.sum);
+      },
+      [&](const pipeline::RenderResult& ended) {
+        directory.write_stats(ended.statistics(), options.compact());
+        directory.write(kLaunches, launch_table(done.launches));
+      },
+      &prints);
+  return print_result(
+      session, options.json, job, result, info, title,
+      {fmt::format("launches   {}, {}", done.launches.size(), directory.path_of(kLaunches)),
+       fmt::format("checked    {} values, {}", report::with_thousands(done.checked),
+                   done.checked ? "all as in the reference" : "because the program was ended early"),
+       "statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt")});
+}
+
+}  // namespace glint::app

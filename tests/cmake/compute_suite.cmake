@@ -1,0 +1,7 @@
+if(TARGET glint::compute)
+  glint_test(compute_suite LINKS glint::compute)
+endif()
+if(TARGET glint)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  add_test(NAME cli_compute COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/compute_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
+endif()
