@@ -48,7 +48,7 @@ class Stats(Mapping[str, Any]):
 
     def __init__(self, stats: dict[str, Stat]):
         self._stats = stats
-        self._paths: list[str] | None = None  # with parts; made when a pattern is first looked for
+        self._paths: dict[str, list[str]] | None = None  # with parts, by what follows the last dot; made when a pattern is first looked for
         self._found: dict[str, list[tuple[str, Any]]] = {}
 
     @classmethod
@@ -159,9 +159,12 @@ class Stats(Mapping[str, Any]):
     def _numbers(self, pattern: str) -> list[tuple[str, Any]]:
         if pattern not in self._found:
             if self._paths is None:
-                self._paths = [path for path, *_ in self.rows()]
-            match = compiled(pattern).fullmatch
-            self._found[pattern] = [(path, self[path]) for path in self._paths if match(path)]
+                self._paths = {}
+                for path, *_ in self.rows():
+                    self._paths.setdefault(path.rpartition(".")[2], []).append(path)
+            match, end = compiled(pattern).fullmatch, pattern.rpartition(".")[2]
+            some = [path for path, *_ in self.rows()] if "*" in end else self._paths.get(end, [])
+            self._found[pattern] = [(path, self[path]) for path in some if match(path)]
         return self._found[pattern]
 
 

@@ -5,6 +5,7 @@ import concurrent.futures
 import os
 import pathlib
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import tempfile
 import unittest
 
 import one_node_slurm
-from sweeps_case import SKIPPED, SweepTest, contents, main, need, points_in
+from sweeps_case import ROOT, SKIPPED, SweepTest, contents, main, need, points_in
 
 SWEEP = """
 name = "sixty"
@@ -76,7 +77,8 @@ class Slurm(EngineTest):
         os.kill(self.slurm.tasks()[0], signal.SIGKILL)
         running = next((line.split("|")[0] for line in self.slurm.jobs() if "RUNNING" in line), None)
         if running:
-            subprocess.run(["scontrol", "requeue", running], check=False)
+            subprocess.run(["scontrol", "requeue", running], check=False)  # Slurm would let it wait for two minutes.
+            subprocess.run(["scontrol", "update", f"JobId={running}", "StartTime=now"], check=False, stderr=subprocess.DEVNULL)
         status = self.glint("status", "sweep.toml", "--store", "store").stdout
         self.assertIn("60 points", status)
         jobs = {line.split("|")[1] for line in self.slurm.jobs()}
@@ -106,6 +108,15 @@ class Slurm(EngineTest):
         self.assertEqual(self.slurm.tasks(), [])
         self.assertEqual([line for line in self.slurm.jobs() if "PENDING" in line or "RUNNING" in line], [])
         self.assertEqual(list(self.folder.glob("store/tmp/*")), [])
+
+    def test_the_file_of_the_documentation_runs_here_and_there(self):
+        page = (ROOT / "docs/sweeps.md").read_text()
+        self.write(re.search(r"cat > warps.toml <<'END'\n(.*?)^END$", page, re.S | re.M)[1], "warps.toml")
+        self.assertIn("glint sweep run warps.toml --engine slurm\n", page)
+        self.glint("run", "warps.toml", "--store", "here")
+        self.glint("run", "warps.toml", "--store", "there", "--engine", "slurm")
+        self.assertEqual(len(points_in(self.folder / "here")), 10)
+        self.assertEqual(contents(self.folder / "here"), contents(self.folder / "there"))
 
     def test_what_sbatch_refuses_is_told(self):
         done = self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--slurm=--partition=nowhere", code=2)

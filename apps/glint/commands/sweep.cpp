@@ -55,9 +55,9 @@ Exit hand_over(const Session& session, const SweepOptions& options) {
 void add_options(Command command, SweepOptions& options) {
   command
       .add_option("ACTION", options.action,
-                  "What to do: run, status, resume, cancel, open or gc (docs/sweeps.md)")
+                  "What to do: run, status, resume, cancel, collect, report, open or gc (docs/sweeps.md)")
       .required()
-      .one_of({"run", "status", "resume", "cancel", "open", "gc"});
+      .one_of({"run", "status", "resume", "cancel", "collect", "report", "open", "gc"});
   command.add_option("SWEEP", options.file, "File of the sweep (sweep.toml), or its name in the store");
   command
       .add_option("--store", options.store,
@@ -83,7 +83,10 @@ void add_options(Command command, SweepOptions& options) {
                    "Leave once all tasks are submitted, and do not wait for them");
   command.add_flag("--failed", options.failed, "Let `resume` also run points again that have failed");
   command.add_flag("--dry-run", options.dry_run, "Check all points and say what would be run");
-  command.add_option("--out", options.out, "Folder for the run that `open` unpacks").type_name("DIR");
+  command
+      .add_option("--out", options.out,
+                  "Folder for tables and page (default: out/sweep-NAME), or for the run that `open` unpacks")
+      .type_name("DIR");
   command.add_option("--point", options.point,
                      "The point that `open` unpacks: its id or the beginning of it");
   command.add_flag("--yes", options.yes, "Let `gc` remove what it lists");

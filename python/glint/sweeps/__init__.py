@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from ..errors import SweepError
+from .collecting import Collection, collect
 from .definition import Definition
 from .running import Engine, Status, read, run, status
 from .store import Store
 
-__all__ = ["Definition", "Engine", "Status", "Store", "SweepError", "read", "run", "status"]
+__all__ = ["Collection", "Definition", "Engine", "Status", "Store", "SweepError", "collect", "read", "run", "status"]

@@ -14,11 +14,13 @@ from typing import Any, Callable, NoReturn
 from ..errors import CommandFailed, GlintError
 from ..launch import find_glint
 from .cleaning import clean
+from .collecting import collect, write
 from .folder import SweepFolder
+from .page import objectives_of, page_of
 from .planning import Program, plan
 from .running import DEFAULT_STORE, Engine, opened, read, run, status, text_of
 from .slurm import SlurmCluster
-from .store import Store
+from .store import Store, write_whole
 
 
 class _Parser(argparse.ArgumentParser):
@@ -127,4 +129,20 @@ def _gc(given: argparse.Namespace) -> int:
     return 0
 
 
-_ACTIONS: dict[str, Callable[[Any], int]] = {"run": _run, "status": _status, "resume": _run, "cancel": _cancel, "open": _open, "gc": _gc}
+def _collect(given: argparse.Namespace) -> int:
+    named = _sweep(given)
+    found = collect(named, given.store)
+    folder = pathlib.Path(given.out or f"out/sweep-{found.definition.name}")
+    folder.mkdir(parents=True, exist_ok=True)
+    objectives_of(found)
+    files = write(found, folder) if given.action == "collect" else []
+    if found.rows:
+        write_whole(folder / "report.html", page_of(found, folder))
+        files.append(folder / "report.html")
+    missing = f", {found.missing} not run yet" if found.missing else ""
+    print(f"{found.definition.name}: {len(found.rows)} points, {len(found.failures)} failed{missing}")
+    print("\n".join(f" {path}" for path in files))
+    return 0
+
+
+_ACTIONS: dict[str, Callable[[Any], int]] = {"run": _run, "status": _status, "resume": _run, "cancel": _cancel, "collect": _collect, "report": _collect, "open": _open, "gc": _gc}

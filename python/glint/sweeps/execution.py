@@ -16,6 +16,7 @@ import zipfile
 import zlib
 from typing import Any, Callable
 
+from ..derived import metrics
 from ..errors import GlintError, SweepError
 from ..fingerprint import file_hash
 from ..run_directory import Run
@@ -107,7 +108,7 @@ class Work:
             files["report.html"] = folder / "report.html"
             subprocess.run([self.program, "report", str(folder / "run"), "-o", str(files["report.html"])], capture_output=True, check=True)
         record = {"schema": SCHEMA, **_description(point), "program": self.program_hash, "glint": [run.info["version"], run.info["git"]],
-                  "partial": ended.code == _PARTIAL, "metrics": {name: run.metrics[name] for name in run.metrics if "wall_seconds" not in run.metrics.about(name).formula},
+                  "partial": ended.code == _PARTIAL, "metrics": {name: run.metrics[name] for name, about in metrics().items() if "wall_seconds" not in about.formula},
                   "cost": {"seconds": round(ended.seconds, 4), "peak_bytes": ended.peak_bytes, "host": socket.gethostname(), "when": _now(), "failed_attempts": attempts},
                   "files": {name: {"bytes": path.stat().st_size, "crc32": f"{zlib.crc32(path.read_bytes()):08x}"} for name, path in files.items()}}
         store.commit(point["id"], files, record)

@@ -114,9 +114,9 @@ class Store:
         scratch.mkdir()
         for name, path in files.items():
             shutil.copyfile(path, scratch / name)
-            _sync(scratch / name)
         (scratch / "point.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-        _sync(scratch / "point.json")
+        for name in (*files, "point.json"):  # The first one mostly takes the others along.
+            _sync(scratch / name)
         place = self.point(id)
         place.parent.mkdir(exist_ok=True)
         try:
