@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <memory>
+#include <string>
 
 #include "vulkan/chain.h"
 
@@ -40,8 +41,10 @@ VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, 
 // Says what ran, so that a user who does not know what can be timed sees it.
 void DestroyDevice(Device& device) {
   const auto& [all, timed, cycles] = device.launches;
+  const std::string folder = device.recording.folder();
   if (all && timed)
-    device.messages().info(fmt::format("{} of {} launches were timed: {} cycles", timed, all, cycles));
+    device.messages().info(fmt::format("{} of {} launches were timed: {} cycles{}", timed, all, cycles,
+                                       folder.empty() ? "" : fmt::format("; glint report {}", folder)));
   else if (all)
     device.messages().info(
         fmt::format("{} launches ran, none of them timed; GLINT_TIMING chooses some", all));

@@ -17,9 +17,17 @@
 #include "vulkan/instance.h"
 #include "vulkan/memory.h"
 #include "vulkan/queue.h"
+#include "vulkan/recording.h"
 
 struct VkDevice_T : glint::vulkan::Dispatchable {
-  explicit VkDevice_T(VkPhysicalDevice_T& of) : physical(of), clock(of.gpu), gpu(of.gpu) {}
+  explicit VkDevice_T(VkPhysicalDevice_T& of)
+      : physical(of),
+        clock(of.gpu),
+        recording(of.instance.settings, of.instance.messages, clock),
+        gpu(of.gpu) {}
+  ~VkDevice_T() { physical.used_bytes -= allocated_bytes; }
+  VkDevice_T(const VkDevice_T&) = delete;
+  VkDevice_T& operator=(const VkDevice_T&) = delete;
 
   glint::vulkan::Messages& messages() const { return physical.instance.messages; }
   // Returns whether the application asked for a feature by its Vulkan name.
@@ -38,6 +46,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   // They give objects names.
   uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0;
   glint::vulkan::DeviceClock clock;
+  glint::vulkan::Recording recording;
   glint::pipeline::Device gpu;  // runs launches
   struct Launches {
     uint64_t all = 0, timed = 0;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <fmt/format.h>
 #include <new>
+#include <set>
 #include <string>
 
 #include "base/diagnostics.h"
@@ -30,8 +31,8 @@ VkResult result_of(const Error& error) {
   return VK_ERROR_UNKNOWN;
 }
 
-// Returns the result of the exception that is being handled, and says its text.
-VkResult explain(const char* command, const Messages* messages) {
+// Returns the result of the exception that is being handled, says its text, and notes it for the index.
+VkResult explain(const char* command, const Messages* messages, Device* device = nullptr) {
   VkResult result = VK_ERROR_UNKNOWN;
   std::string why;
   try {
@@ -49,8 +50,19 @@ VkResult explain(const char* command, const Messages* messages) {
   }
   const std::string text = fmt::format("{}: {}", command, why);
   messages ? messages->error(text) : write_to_stderr(text);
+  if (device) device->recording.add_refusal(command, why);
   return result;
 }
+
+// Trampolines of such commands have no object to tell, so there is one list for the process.
+struct CommandsNotThere {
+  std::mutex mutex;
+  std::set<std::string> names;
+  static CommandsNotThere& instance() {
+    static CommandsNotThere all;
+    return all;
+  }
+};
 
 }  // namespace
 
@@ -64,14 +76,14 @@ VkResult caught(const char* command, PhysicalDevice* device) {
   return explain(command, &device->instance.messages);
 }
 VkResult caught(const char* command, Device* device) {
-  return explain(command, &device->messages());
+  return explain(command, &device->messages(), device);
 }
 VkResult caught(const char* command, Queue* queue) {
-  return explain(command, &queue->device.messages());
+  return explain(command, &queue->device.messages(), &queue->device);
 }
 // Most commands that are recorded have no result. The end of the recording has it.
 VkResult caught(const char* command, CommandBuffer* commands) {
-  return commands->failure = explain(command, &commands->device.messages());
+  return commands->failure = explain(command, &commands->device.messages(), &commands->device);
 }
 
 std::unique_lock<std::mutex> lock_of(Device* device) {
@@ -83,6 +95,15 @@ std::unique_lock<std::mutex> lock_of(Queue* queue) {
 
 void say_not_written(const char* command) {
   write_to_stderr(fmt::format("{} is not there: the device does compute and transfer only", command));
+  auto& [mutex, names] = CommandsNotThere::instance();
+  const std::lock_guard lock(mutex);
+  names.insert(command);
+}
+
+std::vector<std::string> commands_not_there() {
+  auto& [mutex, names] = CommandsNotThere::instance();
+  const std::lock_guard lock(mutex);
+  return {names.begin(), names.end()};
 }
 
 }  // namespace glint::vulkan

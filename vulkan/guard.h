@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <mutex>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "vulkan/handles.h"
 
@@ -70,6 +72,8 @@ Result guarded(const char* command, Object object, Call&& call) {
 
 // Answers for a core command that the driver does not have. It says the command's name once.
 void say_not_written(const char* command);
+// Returns the names of those that the process has called, sorted.
+std::vector<std::string> commands_not_there();
 template <class Result>
 Result not_written(const char* command, Once& said) {
   if (said.first()) say_not_written(command);

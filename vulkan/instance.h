@@ -1,10 +1,13 @@
 // Holds an instance and the one physical device that it has.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "pipeline/params.h"
@@ -20,6 +23,7 @@ struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
   const glint::pipeline::GpuParams& gpu;
   VkPhysicalDeviceProperties core{};           // with the limits
   glint::vulkan::DeviceProperties properties;  // all others
+  std::atomic<VkDeviceSize> used_bytes = 0;    // of the heap, by all devices
 };
 
 struct VkInstance_T : glint::vulkan::Dispatchable {

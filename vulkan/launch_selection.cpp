@@ -51,8 +51,9 @@ void LaunchSelection::add(const std::string& choice) {
   if (choice.empty() || choice == "none") return;
   if (choice == "all") {
     all_ = true;
-  } else if (starts_with(choice, "dispatch ")) {
-    add_numbers(choice.substr(9));
+  } else if (const std::string kind = choice.substr(0, choice.find(' '));
+             kind.size() < choice.size() && (kind == "launch" || kind == "dispatch" || kind == "trace")) {
+    add_numbers(kind, choice.substr(kind.size() + 1));
   } else if (starts_with(choice, "first ")) {
     first_ = std::max(first_, number_of_text(trimmed(choice.substr(6))));
   } else if (starts_with(choice, "label:")) {
@@ -61,19 +62,19 @@ void LaunchSelection::add(const std::string& choice) {
     shaders_.push_back(choice.substr(7));
   } else {
     throw UserError(
-        fmt::format("GLINT_TIMING: '{}' is none of 'all', 'none', 'dispatch 0,7-9', 'first 2', "
-                    "'label:NAME' and 'shader:NAME'",
+        fmt::format("GLINT_TIMING: '{}' is none of 'all', 'none', 'launch 0,7-9', 'dispatch 0,7-9', "
+                    "'trace 0,7-9', 'first 2', 'label:NAME' and 'shader:NAME'",
                     choice));
   }
 }
 
-void LaunchSelection::add_numbers(const std::string& list) {
+void LaunchSelection::add_numbers(const std::string& kind, const std::string& list) {
   for_each_part(list, ',', [&](const std::string& part) {
     const size_t dash = part.find('-');
     const uint64_t from = number_of_text(trimmed(part.substr(0, dash)));
     const uint64_t to = dash == std::string::npos ? from : number_of_text(trimmed(part.substr(dash + 1)));
     if (to < from) throw UserError(fmt::format("GLINT_TIMING: the range '{}' ends before it begins", part));
-    numbers_.emplace_back(from, to);
+    numbers_.push_back({kind, from, to});
   });
 }
 
@@ -84,8 +85,9 @@ bool LaunchSelection::takes(const LaunchFacts& launch) const {
   return all_ || launch.of_pipeline < first_ || has(shaders_, launch.shader) ||
          std::any_of(labels_.begin(), labels_.end(),
                      [&](const std::string& label) { return has(launch.labels, label); }) ||
-         std::any_of(numbers_.begin(), numbers_.end(), [&](const auto& range) {
-           return launch.number >= range.first && launch.number <= range.second;
+         std::any_of(numbers_.begin(), numbers_.end(), [&](const Range& range) {
+           return (range.kind == "launch" || range.kind == launch.kind) && launch.number >= range.from &&
+                  launch.number <= range.to;
          });
 }
 

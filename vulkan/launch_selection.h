@@ -3,14 +3,14 @@
 #pragma once
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace glint::vulkan {
 
 // Says what a selection may ask of a launch.
 struct LaunchFacts {
-  uint64_t number = 0;              // of the launch, counted from 0 on the device
+  std::string kind;                 // "dispatch" or "trace"
+  uint64_t number = 0;              // of the launch, counted from 0 on the device over all kinds
   uint64_t of_pipeline = 0;         // how often its pipeline was launched before
   std::string shader;               // its name
   std::vector<std::string> labels;  // of debug utils that are open
@@ -18,8 +18,9 @@ struct LaunchFacts {
 
 class LaunchSelection {
  public:
-  // Reads choices that ';' separates: "all", "none", "dispatch 0,7-9", "first 2" (of each pipeline),
-  // "label:NAME", "shader:NAME". An empty text is "none". Throws UserError that says what is wrong.
+  // Reads choices that ';' separates: "all", "none", "launch 0,7-9" (of any kind), "dispatch 0,7-9", "trace
+  // 3", "first 2" (of each pipeline), "label:NAME", "shader:NAME". An empty text is "none". Throws UserError
+  // that says what is wrong.
   static LaunchSelection parse(const std::string& text);
 
   bool takes(const LaunchFacts& launch) const;
@@ -29,11 +30,15 @@ class LaunchSelection {
 
  private:
   void add(const std::string& choice);
-  void add_numbers(const std::string& list);
+  void add_numbers(const std::string& kind, const std::string& list);
 
   bool all_ = false;
   uint64_t first_ = 0;
-  std::vector<std::pair<uint64_t, uint64_t>> numbers_;  // from, to
+  struct Range {
+    std::string kind;  // "launch" for any
+    uint64_t from, to;
+  };
+  std::vector<Range> numbers_;
   std::vector<std::string> labels_, shaders_;
 };
 

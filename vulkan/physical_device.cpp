@@ -1,5 +1,6 @@
 // Answers what applications ask of the device before they make one.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
 #include <span>
@@ -79,7 +80,8 @@ void GetPhysicalDeviceMemoryProperties(PhysicalDevice&, VkPhysicalDeviceMemoryPr
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   for (const VkMemoryPropertyFlags flags :
        {VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT),
-        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT})
+        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped,
+        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT})
     out->memoryTypes[out->memoryTypeCount++] = {flags, 0};
   out->memoryHeapCount = 1;
   out->memoryHeaps[0] = {kHeapBytes, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
@@ -87,6 +89,12 @@ void GetPhysicalDeviceMemoryProperties(PhysicalDevice&, VkPhysicalDeviceMemoryPr
 
 void GetPhysicalDeviceMemoryProperties2(PhysicalDevice& device, VkPhysicalDeviceMemoryProperties2* out) {
   GetPhysicalDeviceMemoryProperties(device, &out->memoryProperties);
+  if (auto* budget = find_in_output<VkPhysicalDeviceMemoryBudgetPropertiesEXT>(
+          out, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT)) {
+    std::fill_n(budget->heapBudget, VK_MAX_MEMORY_HEAPS, 0);
+    std::fill_n(budget->heapUsage, VK_MAX_MEMORY_HEAPS, 0);
+    budget->heapBudget[0] = kHeapBytes, budget->heapUsage[0] = device.used_bytes;
+  }
 }
 
 void GetPhysicalDeviceSparseImageFormatProperties(PhysicalDevice&, VkFormat, VkImageType,

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <ctime>
 #include <fmt/format.h>
+#include <iterator>
 #include <optional>
 
+#include "vulkan/chain.h"
 #include "vulkan/command_buffer.h"
 #include "vulkan/device.h"
 #include "vulkan/memory.h"
@@ -116,6 +119,29 @@ void CmdWriteTimestamp(CommandBuffer& commands, VkPipelineStageFlagBits, VkQuery
 }
 void CmdWriteTimestamp2(CommandBuffer& commands, VkPipelineStageFlags2, VkQueryPool pool, uint32_t query) {
   CmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool, query);
+}
+
+VkResult GetPhysicalDeviceCalibrateableTimeDomainsEXT(PhysicalDevice&, uint32_t* count,
+                                                      VkTimeDomainEXT* out) {
+  constexpr VkTimeDomainEXT kDomains[] = {VK_TIME_DOMAIN_DEVICE_EXT, VK_TIME_DOMAIN_CLOCK_MONOTONIC_EXT};
+  return enumerate(uint32_t(std::size(kDomains)), count, out,
+                   [&](auto& to, uint32_t i) { to = kDomains[i]; });
+}
+
+// Simulated time and the host's have nothing to do with each other, so all that is known of the deviation is
+// how long reading them took.
+VkResult GetCalibratedTimestampsEXT(Device& device, uint32_t count, const VkCalibratedTimestampInfoEXT* infos,
+                                    uint64_t* out, uint64_t* deviation) {
+  const auto now = [] {
+    timespec time{};
+    ::clock_gettime(CLOCK_MONOTONIC, &time);
+    return uint64_t(time.tv_sec) * 1'000'000'000 + uint64_t(time.tv_nsec);
+  };
+  const uint64_t begin = now();
+  for (uint32_t i = 0; i < count; ++i)
+    out[i] = infos[i].timeDomain == VK_TIME_DOMAIN_DEVICE_EXT ? device.clock.now() : now();
+  *deviation = now() - begin + 1;
+  return VK_SUCCESS;
 }
 
 void CmdCopyQueryPoolResults(CommandBuffer& commands, VkQueryPool pool, uint32_t first, uint32_t count,

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/settings.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <cstdlib>
 #include <dlfcn.h>
 #include <filesystem>
@@ -40,16 +42,42 @@ exec::OnFault on_fault_of(const std::string& text) {
   throw UserError(fmt::format("GLINT_ON_FAULT is '{}': it has to be 'warn' or 'stop'", text));
 }
 
-bool is_universal(const std::string& text) {
-  if (text != "compute" && text != "universal")
-    throw UserError(fmt::format("GLINT_VK_QUEUE is '{}': it has to be 'compute' or 'universal'", text));
-  return text == "universal";
-}
-
 // Returns the words of a text.
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
   return {std::istream_iterator<std::string>(in), {}};
+}
+
+pipeline::Observation observation_of(const std::string& text) {
+  pipeline::Observation out;
+  for (const std::string& word : words_of(text)) {
+    const char* const digits = word.data() + std::min<size_t>(word.size(), 7);
+    if (word == "profile") {
+      out.profile = true;
+    } else if (word == "heat") {
+      out.heat = true;
+    } else if (word == "trace") {
+      out.trace.wanted = true;
+    } else if (const auto [end, error] = std::from_chars(digits, word.data() + word.size(), out.sample);
+               word.rfind("sample=", 0) != 0 || error != std::errc() || end != word.data() + word.size() ||
+               out.sample == 0) {
+      throw UserError(
+          fmt::format("GLINT_OBSERVE: '{}' is none of 'profile', 'sample=CYCLES', 'heat' and 'trace'", word));
+    }
+  }
+  return out;
+}
+
+bool is_compact(const std::string& text) {
+  if (text != "full" && text != "compact")
+    throw UserError(fmt::format("GLINT_STATS is '{}': it has to be 'full' or 'compact'", text));
+  return text == "compact";
+}
+
+bool is_universal(const std::string& text) {
+  if (text != "compute" && text != "universal")
+    throw UserError(fmt::format("GLINT_VK_QUEUE is '{}': it has to be 'compute' or 'universal'", text));
+  return text == "universal";
 }
 
 // Returns what Glint was installed with, which lies beside this library.
@@ -76,7 +104,12 @@ void read_machine(Settings& settings) {
 Settings settings_of_environment() {
   Settings out;
   read_machine(out);
-  out.timing = LaunchSelection::parse(value_of("GLINT_TIMING"));
+  out.timing_text = value_of("GLINT_TIMING");
+  out.timing = LaunchSelection::parse(out.timing_text);
+  out.out = value_of("GLINT_OUT");
+  out.observe = observation_of(value_of("GLINT_OBSERVE"));
+  if (const std::string text = value_of("GLINT_STATS"); !text.empty()) out.is_compact = is_compact(text);
+  out.tells_progress = !value_of("GLINT_PROGRESS").empty();
   if (const std::string text = value_of("GLINT_THREADS"); !text.empty()) out.threads = threads_of(text);
   if (const std::string text = value_of("GLINT_ON_FAULT"); !text.empty()) out.on_fault = on_fault_of(text);
   if (const std::string text = value_of("GLINT_VK_QUEUE"); !text.empty())

@@ -6,6 +6,7 @@
 
 #include "exec/fault.h"
 #include "pipeline/params.h"
+#include "pipeline/run_profile.h"
 #include "vulkan/launch_selection.h"
 
 namespace glint::vulkan {
@@ -14,6 +15,11 @@ struct Settings {
   std::string preset;                            // GLINT_CONFIG: a preset ("mobile") or a file
   pipeline::GpuParams gpu;                       // the preset, with the settings of GLINT_SET on top
   LaunchSelection timing;                        // GLINT_TIMING: the launches that the timing machine runs
+  std::string timing_text;                       // the same as it was written
+  std::string out;                               // GLINT_OUT: the folder of the application; "" for a name
+  pipeline::Observation observe;                 // GLINT_OBSERVE: what to write of timed launches besides
+  bool is_compact = false;                       // GLINT_STATS: "full" or "compact", as `glint run --stats`
+  bool tells_progress = false;                   // GLINT_PROGRESS: a file tells how far a timed launch is
   uint32_t threads = 1;                          // GLINT_THREADS: threads of the host for a launch
   exec::OnFault on_fault = exec::OnFault::Warn;  // GLINT_ON_FAULT: "warn" or "stop"
   // GLINT_VK_QUEUE: "compute" or "universal". With the latter the device pretends to have graphics, for

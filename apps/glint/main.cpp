@@ -101,6 +101,7 @@ int main_of(int argc, char** argv) {
   std::vector<std::string> plugin_files;
   add_plugin_option(app, plugin_files);
   add_run(app, session);
+  add_vulkan(app, session);
   add_bench(app, session);
   add_lab(app, session);
   add_sweep(app, session);

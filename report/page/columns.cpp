@@ -247,7 +247,8 @@ Json page_columns(const Json& data) {
     run["source"]["counts"] = count_columns(run["source"]["counts"]);
   }
   Json out = Json::object();
-  for (const auto& [name, value] : data.items()) out[name] = name == "runs" ? std::move(list) : value;
+  for (const auto& [name, value] : data.items())
+    if (name != "applications") out[name] = name == "runs" ? std::move(list) : value;
   if (stats.num_numbers() > kMaxNumbers) stats.add_up();
   const Json quotients = quotients_of(stats);
   out["stats"] = stats.json(quotients);

@@ -15,7 +15,7 @@ namespace glint::report {
 //    their two names.
 //  - The files and programs of "source" appear once, in "listings".
 //  - report/page/rows.h treats timelines and counts of sources.
-//  - Pictures are left out, because the page has them as pictures.
+//  - Pictures are left out, because the page has them as pictures, and applications, which are tables.
 //  - Whole numbers are written without a fraction.
 // web/src/document.js turns it back, and nothing is rounded.
 nlohmann::ordered_json page_columns(const nlohmann::ordered_json& data);

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "report/page/application.h"
 #include "report/page/collection.h"
 #include "report/page/columns.h"
 #include "report/page/lab.h"
@@ -187,8 +188,8 @@ std::string section(const char* id, const char* title, const char* lead, const s
 
 // Returns the sections that can be read without script. The script adds its figures.
 std::string static_sections(const Json& data) {
-  std::string out =
-      partial_runs(data["runs"]) + collection_sections(data) + lab_sections(data) + suite_sections(data);
+  std::string out = partial_runs(data["runs"]) + application_sections(data) + collection_sections(data) +
+                    lab_sections(data) + suite_sections(data);
   if (data["runs"].empty()) return out;
   return out +
          section("configuration", "Configuration", config_lead(data["runs"]).c_str(),
@@ -208,6 +209,7 @@ std::string static_sections(const Json& data) {
 std::string page_title(const Json& data) {
   const Json& runs = data["runs"];
   if (!runs.empty()) return runs.size() == 1 ? title_of(runs[0]) : fmt::format("{} runs", runs.size());
+  for (const Json& one : data.value("applications", Json::array())) return one["index"]["program"];
   for (const Json& lab : data.value("labs", Json::array())) return lab.value("name", "Experiment");
   for (const char* key : {"characterizations", "models"})
     for (const Json& one : data.value(key, Json::array()))

@@ -15,9 +15,9 @@ struct PageParts {
   std::string unpack;  // a script that unpacks the other one and runs it
 };
 
-// Returns the page. `data` is page_data(), to which "characterizations" and "models" (suite.h) and
-// "collections" (collection.h) may be added;
-// the page holds it as page_columns() returns it. Throws UserError when the frame lacks a place.
+// Returns the page. `data` is page_data(), to which "characterizations" and "models" (suite.h), "collections"
+// (collection.h) and "applications" (application.h) may be added; the page holds it as page_columns() returns
+// it. Throws UserError when the frame lacks a place.
 std::string page(const nlohmann::ordered_json& data, const PageParts& parts);
 
 }  // namespace glint::report

@@ -15,6 +15,8 @@ BENCH_OF = {f"docs/{name}.md": QUICK_SUITE for name in ("characterization", "mod
 SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, with the scene that is run instead
 KERNEL_ONLY = ["--only", "L1"]  # added to `glint microbench` without --only
 
+NEEDS = {"docs/vulkan.md": ("vulkaninfo", "ffmpeg")}  # Where these are not installed, or the driver is not built, the page's commands do not run.
+
 # These commands are not run: they build all of Glint, or have a test of their own. Their arguments are checked instead.
 NOT_RUN = ("cmake", "ninja", "ctest", "sudo", "apt-get")
 

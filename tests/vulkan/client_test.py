@@ -1,4 +1,5 @@
-# Runs the tests of the client program on another driver, and under the validation layer, which has to stay silent.
+# Runs the tests of the client program on another driver, under the validation layer, which has to stay silent, and with
+# little memory.
 # SPDX-License-Identifier: Apache-2.0
 """usage: client_test.py MANIFEST SOURCE_DIR CLIENT"""
 import pathlib
@@ -26,6 +27,11 @@ class Client(VulkanTest):
                                    VK_LAYER_ENABLES="VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertNotIn("heard:", result.stderr)
+
+    def test_memory_that_the_host_does_not_have_is_refused(self):
+        result = self.run_on_glint("sh", "-c", f"ulimit -v 3000000 && exec {CLIENT} '[little_memory]'")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("the host has no memory for 4294967296 bytes", result.stderr)
 
 
 vulkan_case.main()

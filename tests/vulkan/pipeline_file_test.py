@@ -1,4 +1,5 @@
-# Tests that a shader computes the same bits in an application as in a pipeline file, on either machine.
+# Tests that a shader computes the same bits in an application as in a pipeline file, on either machine, with the same
+# statistics.
 # SPDX-License-Identifier: Apache-2.0
 """usage: pipeline_file_test.py MANIFEST SOURCE_DIR CLIENT GLINT"""
 import pathlib
@@ -42,7 +43,7 @@ class PipelineFile(VulkanTest):
         (self.folder / "same.toml").write_text(FILE)
         for mode, timing in (("functional", "none"), ("timing", "all")):
             result = self.run_on_glint(CLIENT, "[shader_of_file]", GLINT_TEST_SHADER="same.comp", GLINT_TEST_RESULT="ours.raw",
-                                       GLINT_TIMING=timing)
+                                       GLINT_TIMING=timing, GLINT_OUT=f"application-{mode}")
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             subprocess.run([GLINT, "run", "same.toml", "--mode", mode, "--out", f"out-{mode}"], cwd=self.folder, check=True,
                            capture_output=True, timeout=200)
@@ -50,6 +51,9 @@ class PipelineFile(VulkanTest):
             self.assertEqual(len(ours), 4096)
             self.assertGreater(len(set(ours)), 64)
             self.assertEqual(ours, file)
+        for name in ("stats.json", "stats.csv", "stats.txt"):
+            self.assertEqual((self.folder / "application-timing/launch-0-dispatch" / name).read_bytes(),
+                             (self.folder / "out-timing" / name).read_bytes(), name)
 
 
 vulkan_case.main()

@@ -1,5 +1,7 @@
-// Is the program of timing_test.py: three launches of two pipelines, with a label around the last.
+// Is the program of timing_test.py and recording_test.py: three launches of two pipelines, with a label
+// around the last, many launches, and one that does not end.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstring>
 #include <iostream>
 
 #include "tests/support/catch.h"
@@ -40,6 +42,29 @@ TEST_CASE("three launches say what the timing machine took for them", "[.][three
 
   for (const uint32_t value : out.as<uint32_t>()) REQUIRE(value == 12);
   std::cout << client.prints;
+}
+
+TEST_CASE("many launches tell when they have ended", "[.][many_launches]") {
+  Client client;
+  const MappedBuffer out = client.buffer(4096);
+  const ComputePipeline add =
+      client.pipeline(kHead + "void main() { a[gl_GlobalInvocationID.x] += 3; }\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(add.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+  for (int i = 1; i <= 200; ++i) {
+    REQUIRE(client.dispatch(add, set, {16, 1, 1}) == VK_SUCCESS);
+    std::cout << "ended " << i << std::endl;
+  }
+}
+
+TEST_CASE("a launch that does not end loses the device", "[.][endless_launch]") {
+  Client client;
+  const MappedBuffer out = client.buffer(4096);
+  const ComputePipeline endless =
+      client.pipeline(kHead + "void main() { while (a[1] == 0) a[0] += a[1]; }\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(endless.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+  std::memset(out.data, 0, out.bytes);
+  CHECK(client.dispatch(endless, set, {1, 1, 1}) == VK_ERROR_DEVICE_LOST);
+  CHECK(vkQueueWaitIdle(client.queue) == VK_ERROR_DEVICE_LOST);
 }
 
 }  // namespace

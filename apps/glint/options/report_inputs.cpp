@@ -11,6 +11,7 @@
 #include "apps/glint/session.h"
 #include "base/diagnostics.h"
 #include "report/analytical/model_table.h"
+#include "report/files/application_index.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_record.h"
 #include "report/page/lab.h"
@@ -135,6 +136,10 @@ void add_named(const std::string& name, ReportInputs& out) {
   const bool is_run = fs::exists(path / "run.json");
   const bool has_models = fs::exists(path / "models.csv");
   if (fs::is_regular_file(path)) return add_models(name, name, "", out);
+  if (!is_run && report::is_application_folder(name)) {
+    out.applications.push_back({{"source", name}, {"index", report::read_application(name)}});
+    return;
+  }
   if (!is_run && fs::exists(path / "lab.json")) {
     const std::string file = (path / "lab.json").string();
     out.labs.push_back(report::read_lab(setup::read_file(file), file));
@@ -196,6 +201,7 @@ void add_suites(const ReportInputs& inputs, nlohmann::ordered_json& data) {
   data["characterizations"] = list(inputs.characterizations);
   data["models"] = list(inputs.models);
   data["labs"] = inputs.labs;
+  data["applications"] = inputs.applications;
 }
 
 }  // namespace glint::app

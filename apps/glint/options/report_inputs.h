@@ -19,11 +19,13 @@ struct ReportInputs {
   std::vector<nlohmann::ordered_json> labs;  // as `glint lab` leaves them in lab.json
   // These are elements of "collections" (report/page/collection.h), whose points have no "link" yet.
   std::vector<nlohmann::ordered_json> collections;
+  // These are elements of "applications" (report/page/application.h), which have no "links" yet.
+  std::vector<nlohmann::ordered_json> applications;
 };
 
 // Finds the inputs that `named` means: directories of runs, folders of `glint bench` (with the models.csv and
-// the folder `characterization` in them), folders of sweeps (with a sweep.json), folders of
-// `glint lab` (with a lab.json), folders of `glint
+// the folder `characterization` in them), folders of sweeps (with a sweep.json), folders of `glint lab` (with
+// a lab.json), folders of applications of the Vulkan driver (with an index.json), folders of `glint
 // characterize`, tables of `glint model`, and folders with such a table. Throws UserError when a table or
 // document cannot be read. Directories that are none of these count as runs, and report::page_data() refuses
 // them.

@@ -19,6 +19,7 @@
 #include "report/files/config_file.h"
 #include "report/files/run_facts.h"
 #include "report/files/run_record.h"
+#include "report/page/application.h"
 #include "report/page/data.h"
 #include "report/page/page.h"
 #include "setup/config.h"
@@ -27,6 +28,7 @@
 namespace glint::app {
 namespace {
 
+constexpr size_t kMostLaunches = 50;              // of an application that have a report each
 constexpr const char* kDefaultPreset = "mobile";  // the default of --config
 
 // Returns the preset of Glint to compare a run's configuration with. It is the preset that the run names,
@@ -89,10 +91,31 @@ void write_points(const Session& session, const std::vector<report::PageRun>& ru
     }
 }
 
+// Writes a report of each launch of an application that was timed, as far as there are not too many, and says
+// where it lies.
+void write_launches(const Session& session, const std::string& path, nlohmann::ordered_json& one) {
+  const std::filesystem::path from = path == "-" ? "." : std::filesystem::absolute(path).parent_path();
+  const std::vector<std::string> folders = report::timed_folders(one["index"]);
+  for (size_t i = 0; i < std::min(folders.size(), kMostLaunches); ++i) {
+    const std::string directory = one["source"].get<std::string>() + "/" + folders[i],
+                      file = directory + "/report.html";
+    if (!std::filesystem::exists(directory + "/stats.json")) continue;  // totals alone, or not there any more
+    write_output(
+        file, page_of(session, report::page_data({page_run(session.resources, directory)}, GLINT_VERSION)));
+    one["links"][folders[i]] = link_of(std::filesystem::proximate(file, from).generic_string());
+  }
+  if (folders.size() > kMostLaunches)
+    fmt::print(
+        stderr,
+        "note: only the {} launches with the most cycles of {} have a report; `glint report` writes one of "
+        "any launch's folder\n",
+        kMostLaunches, folders.size());
+}
+
 }  // namespace
 
-Exit write_report(const Session& session, const std::vector<std::string>& named, const std::string& out,
-                  const std::optional<report::TimelineRequest>& timeline) {
+std::string make_report(const Session& session, const std::vector<std::string>& named, const std::string& out,
+                        const std::optional<report::TimelineRequest>& timeline) {
   ReportInputs inputs = report_inputs(named);
   std::vector<report::PageRun> runs;
   for (const std::string& directory : inputs.runs) {
@@ -105,9 +128,16 @@ Exit write_report(const Session& session, const std::vector<std::string>& named,
                                : "report.html";
   nlohmann::ordered_json data = report::page_data(runs, GLINT_VERSION);
   write_points(session, runs, path, inputs);
+  for (nlohmann::ordered_json& one : inputs.applications) write_launches(session, path, one);
   add_suites(inputs, data);
   tell_of_files(inputs.runs);
   write_output(path, page_of(session, data));
+  return path;
+}
+
+Exit write_report(const Session& session, const std::vector<std::string>& named, const std::string& out,
+                  const std::optional<report::TimelineRequest>& timeline) {
+  const std::string path = make_report(session, named, out, timeline);
   if (path != "-") print_output("{}\n", path);
   return Exit::Ok;
 }

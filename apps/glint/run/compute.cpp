@@ -13,6 +13,7 @@
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 #include "report/terminal/table.h"
+#include "setup/recorded_launch.h"
 
 namespace glint::app {
 namespace {
@@ -75,7 +76,7 @@ Exit run_program(const Session& session, const std::string& what, bool small, co
   report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", what, options.mode)
                                                      : options.out);
   report::RunInfo info = describe_run(session, program, input, job.gpu, options);
-  begin_directory(directory, info, job.gpu, title);
+  setup::begin_directory(directory, info, job.gpu, title);
   compute::ProgramResult done;
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,

@@ -8,6 +8,7 @@
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pipeline/device.h"
+#include "setup/recorded_launch.h"
 
 namespace glint::app {
 namespace {
@@ -40,7 +41,7 @@ pipeline::RenderResult run_launches(const LaunchList& list, const report::RunInf
     own.scene = fmt::format("{} {}", info.scene, launches[i].name);
     own.shader = shader_of(launches[i]);
     own.frame[0].second = x, own.frame[1].second = y;
-    begin_directory(
+    setup::begin_directory(
         directory, own, list.job.gpu,
         fmt::format("{}  {} x {} x {} threads, {} on {}", own.scene, x, y, z, info.mode, info.config));
     const pipeline::LaunchMode mode{list.job.timing, list.job.no_skip, list.options.threads,

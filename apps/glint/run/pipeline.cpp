@@ -19,6 +19,7 @@
 #include "pipeline/pipeline_world.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
+#include "setup/recorded_launch.h"
 
 namespace glint::app {
 namespace {
@@ -171,7 +172,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
   info.on_fault = exec::name_of(options.on_fault);
   info.compact = options.compact();
-  begin_directory(directory, info, job.gpu, title);
+  setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files, launches;
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,

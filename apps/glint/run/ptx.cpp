@@ -13,6 +13,7 @@
 #include "pipeline/kernel_launch.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
+#include "setup/recorded_launch.h"
 #include "setup/resources.h"
 
 namespace glint::app {
@@ -139,7 +140,7 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
       info.saved.push_back(argument.name + ".bin");
       info.outputs.push_back({argument.name + ".bin", argument.name});
     }
-  begin_directory(directory, info, job.gpu, title);
+  setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,

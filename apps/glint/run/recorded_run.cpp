@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/recorded_run.h"
 
-#include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fmt/chrono.h>
-#include <new>
+#include <fmt/format.h>
 #include <optional>
 #include <utility>
 
@@ -16,47 +13,22 @@
 #include "apps/glint/options/output.h"
 #include "apps/glint/run/stop_signals.h"
 #include "apps/glint/run/summary.h"
-#include "memsys/peak.h"
 #include "report/files/stat_writer.h"
 #include "report/terminal/progress.h"
-#include "setup/config.h"
+#include "setup/recorded_launch.h"
 
 namespace glint::app {
 
 report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu,
                              const std::string& config, const std::string& mode) {
-  report::RunInfo info;
+  report::RunInfo info = setup::new_run_info(gpu, config, mode);
   info.command = session.arguments;
-  info.version = GLINT_VERSION;
-  info.git = GLINT_GIT;
-  info.compiler = __VERSION__;
   for (const Plugin& plugin : session.plugins)
     info.plugins.emplace_back(plugin.path, fmt::format("{:016x}", plugin.hash));
-  info.config = config;
-  info.config_hash = setup::config_hash(gpu);
-  info.mode = mode;
-  const mem::Peak peak = mem::peak(gpu.memory, gpu.cores, gpu.clock_mhz);
-  info.memory_peaks = {
-      {"l1_bytes", double(peak.l1_bytes)},          {"l1_bytes_per_second", peak.l1_bandwidth},
-      {"network_bytes_per_second", peak.network()}, {"l2_bytes", double(peak.l2_bytes)},
-      {"l2_bytes_per_second", peak.l2_bandwidth},   {"dram_bytes_per_second", peak.dram_bandwidth}};
-  info.started =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                  fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   return info;
 }
 
 namespace {
-
-// Adds what run.json holds of the result.
-void add_result(const pipeline::RenderResult& result, report::RunInfo& info) {
-  for (const exec::FaultLog::Entry& fault : result.faults.in_order())
-    info.faults.push_back({std::string(exec::name_of(fault.kind)), fault.first.place, fault.first.what,
-                           fault.first.launch_id, fault.count});
-  if (result.residency.warps > 0)
-    info.residency = {result.residency.warps, result.residency.blocks,
-                      std::string(name_of(result.residency.limit))};
-}
 
 constexpr int kShellSignal = 128;  // A shell adds the signal's number to this (POSIX).
 
@@ -75,56 +47,26 @@ void add_part(const pipeline::RenderResult& result, int signal, report::RunInfo&
                              at.num_warps, at.where.empty() ? "" : ", and ", at.where);
 }
 
-void keep_prints(const std::string& printed, const report::RunDirectory& directory) {
-  if (printed.empty()) return;
-  fmt::print(stderr, "{}", printed);
-  directory.write("printf.txt", printed);
-}
-
 }  // namespace
-
-void begin_directory(report::RunDirectory& directory, const report::RunInfo& info,
-                     const pipeline::GpuParams& gpu, const std::string& title) {
-  directory.begin(info);
-  directory.write_config(describe_params(gpu), "Resolved configuration of: " + title, info.compact);
-}
 
 pipeline::RenderResult record_launch(const report::RunDirectory& directory, report::RunInfo& info,
                                      const std::function<pipeline::RenderResult()>& launch,
                                      const std::function<void(const pipeline::RenderResult&)>& keep,
                                      exec::PrintLog* prints) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto stop_watch = [&] {
-    info.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  const auto fail = [&](Exit exit, const std::string& message) {
-    if (info.wall_seconds == 0) stop_watch();
-    info.exit = int(exit);
-    info.message = message;
-    // When two errors occur, the first one is told. A full disk has room again once the results are gone.
-    try {
-      directory.remove_results();
-      keep_prints(prints ? prints->take() : "", directory);
-      directory.write_run(info);
-    } catch (const Error&) {
-    }
-  };
-  try {
-    pipeline::RenderResult result = launch();
-    stop_watch();
-    add_result(result, info);
-    if (result.end != pipeline::LaunchEnd::Whole) add_part(result, StopSignals::taken(), info);
-    keep_prints(prints ? prints->take() : "", directory);
-    keep(result);
-    directory.write_run(info);
-    return result;
-  } catch (const Error& error) {
-    fail(error.exit(), error.what());
-    throw;
-  } catch (const std::bad_alloc&) {
-    fail(Exit::Failure, "out of memory");
-    throw;
-  }
+  return setup::record_launch(directory, info,
+                              {.launch = launch,
+                               .keep =
+                                   [&](const pipeline::RenderResult& result) {
+                                     if (result.end != pipeline::LaunchEnd::Whole)
+                                       add_part(result, StopSignals::taken(), info);
+                                     keep(result);
+                                   },
+                               .take_prints =
+                                   [prints] {
+                                     std::string printed = prints ? prints->take() : "";
+                                     fmt::print(stderr, "{}", printed);
+                                     return printed;
+                                   }});
 }
 
 pipeline::RenderResult run_recorded(const Session& session, uint64_t max_cycles,

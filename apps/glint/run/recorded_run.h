@@ -12,14 +12,10 @@
 
 namespace glint::app {
 
-// Returns command, version, configuration and time of a run that begins now. The caller adds what it runs.
+// Returns command, plugins, version, configuration and time of a run that begins now. The caller adds what it
+// runs.
 report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& gpu,
                              const std::string& config, const std::string& mode);
-
-// Locks and marks the directory (RunDirectory::begin()), removes what an earlier run left and writes
-// config.toml with the title, so that no older file can be taken for one of this run.
-void begin_directory(report::RunDirectory& directory, const report::RunInfo& info,
-                     const pipeline::GpuParams& gpu, const std::string& title);
 
 // Calls `run` with a watch that shows progress on the terminal and ends the launch at `max_cycles` or at a
 // signal to stop, then `keep` to write the run's files. Writes run.json last, which says how far a launch

@@ -18,6 +18,7 @@
 #include "report/files/run_directory.h"
 #include "report/terminal/progress.h"
 #include "scenes/import/scene_file.h"
+#include "setup/recorded_launch.h"
 
 namespace glint::app {
 namespace {
@@ -153,7 +154,7 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
                          : launch.out);
   report::RunInfo info = describe_run(session, options, launch, job);
   const std::string title = title_of(job, options, launch);
-  begin_directory(directory, info, job.gpu, title);
+  setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files = {
       "picture    " + directory.path_of("image.png"),
       "statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt")};

@@ -1,0 +1,14 @@
+// Says what the process is that has loaded the driver.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+namespace glint::vulkan {
+
+// Returns the words of the command line, or none where the system does not tell.
+std::vector<std::string> command_of_process();
+// Returns the name of the program as a file's name may have it: "vkcube" of "/usr/bin/vkcube".
+std::string program_of_process();
+
+}  // namespace glint::vulkan
