@@ -36,6 +36,29 @@ class Ffmpeg(VulkanTest):
             with self.subTest(name):
                 self.compare(*SOURCE, "-vf", f"format=rgba,hwupload,{filters},hwdownload,format=rgba")
 
+    def test_the_average_blur_is_its_definition(self):
+        size, radius = 32, 2  # sizeX=3 has two neighbours on either side; samples lie at the corners of texels
+        source = ["-f", "lavfi", "-i", f"testsrc2=size={size}x{size}:rate=1"]
+        before = self.picture(MANIFEST, *source, "-vf", "format=rgba")
+        after = self.picture(MANIFEST, *source, "-vf", "format=rgba,hwupload,avgblur_vulkan=sizeX=3:sizeY=3,hwdownload,format=rgba")
+
+        def texel(picture, x, y, channel):
+            return picture[(min(max(y, 0), size - 1) * size + min(max(x, 0), size - 1)) * 4 + channel]
+
+        def blurred(picture, dx, dy):
+            out = bytearray(len(picture))
+            for i in range(len(picture)):
+                x, y, channel = i // 4 % size, i // 4 // size, i % 4
+                total = sum(texel(picture, x + dx * p - a, y + dy * p - b, channel)
+                            for p in range(-radius, radius + 1) for a in (0, 1) for b in (0, 1))
+                parts = 4 * (2 * radius + 1)
+                out[i] = (2 * total + parts) // (2 * parts)
+            return bytes(out)
+
+        wanted = blurred(blurred(before, 1, 0), 0, 1)
+        self.assertGreater(len(set(wanted)), 16)
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(after, wanted)), 1)
+
     def test_filters_of_two_pictures(self):
         for filters in ("overlay_vulkan=x=5:y=7", "blend_vulkan=all_mode=multiply"):
             with self.subTest(filters):
