@@ -116,6 +116,12 @@ class Recording(VulkanTest):
         for each in launches:
             self.assertIn(f"gpu.cycles,{each['cycles']},", (self.folder / "killed" / each["folder"] / "stats.csv").read_text())
 
+    def test_an_application_may_leave_its_device_behind(self):
+        self.application("[leaving]", GLINT_OUT="left")
+        index = self.index("left")
+        self.assertEqual(index["state"], "ended")
+        self.assertEqual(len([each for each in index["commands"] if each["kind"] == "dispatch"]), 100)
+
     def test_two_applications_at_once_do_not_meet(self):
         environment = {**os.environ, "VK_DRIVER_FILES": str(MANIFEST), "VK_ICD_FILENAMES": str(MANIFEST), "GLINT_TIMING": "all",
                        "GLINT_OUT": "both"}

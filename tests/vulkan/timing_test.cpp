@@ -1,6 +1,7 @@
 // Is the program of timing_test.py and recording_test.py: three launches of two pipelines, with a label
 // around the last, many launches, and one that does not end.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 
@@ -54,6 +55,16 @@ TEST_CASE("many launches tell when they have ended", "[.][many_launches]") {
     REQUIRE(client.dispatch(add, set, {16, 1, 1}) == VK_SUCCESS);
     std::cout << "ended " << i << std::endl;
   }
+}
+
+TEST_CASE("an application ends without destroying what it made", "[.][leaving]") {
+  auto* const client = new Client;
+  const MappedBuffer out = client->buffer(4096);
+  const ComputePipeline add =
+      client->pipeline(kHead + "void main() { a[gl_GlobalInvocationID.x] += 3; }\n", {{kStorage}});
+  const VkDescriptorSet set = client->set(add.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+  for (int i = 0; i < 100; ++i) REQUIRE(client->dispatch(add, set, {1, 1, 1}) == VK_SUCCESS);
+  std::exit(0);
 }
 
 TEST_CASE("a launch that does not end loses the device", "[.][endless_launch]") {
