@@ -1,11 +1,16 @@
 # Tests that the manifest which is installed finds the library, also below a prefix that was moved.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: install_test.py MANIFEST SOURCE_DIR"""
+"""usage: install_test.py MANIFEST SOURCE_DIR CLIENT GLINT"""
 import os
+import pathlib
+import shutil
 import subprocess
+import sys
 
 import vulkan_case
 from vulkan_case import MANIFEST, VulkanTest
+
+GLINT = pathlib.Path(sys.argv[4]).resolve()
 
 
 class Install(VulkanTest):
@@ -27,6 +32,14 @@ class Install(VulkanTest):
         self.expect_device(self.folder / "first")
         (self.folder / "first").rename(self.folder / "second")
         self.expect_device(self.folder / "second")
+
+    def test_an_installed_command_takes_the_installed_driver(self):
+        self.install(self.folder / "prefix")
+        (self.folder / "prefix/bin").mkdir()
+        shutil.copy(GLINT, self.folder / "prefix/bin/glint")
+        result = subprocess.run([self.folder / "prefix/bin/glint", "vulkan", "--", "sh", "-c", "echo $VK_DRIVER_FILES"], cwd=self.folder,
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.stdout.strip(), str((self.folder / "prefix/share/vulkan/icd.d/glint_icd.json").resolve()), result.stderr)
 
     def test_the_tree_of_a_package_is_whole(self):
         self.install("/usr", DESTDIR=str(self.folder))
