@@ -23,7 +23,7 @@ class Timing(VulkanTest):
         self.assertEqual(sorted(every), [0, 1, 2])
         self.assertEqual(every[0], every[2], "the caches are cold at each launch")
         for choice, taken in (("none", []), ("dispatch 1-2", [1, 2]), ("first 1", [0, 1]), ("label:last", [2]),
-                              ("shader:shader 2", [1]), ("dispatch 0; label:last", [0, 2])):
+                              ("shader:shader 2", [1]), ("dispatch 0; label:last", [0, 2]), ("launch 1-2", [1, 2]), ("trace 0-9", [])):
             with self.subTest(choice):
                 self.assertEqual(self.cycles(GLINT_TIMING=choice), {number: every[number] for number in taken})
 
