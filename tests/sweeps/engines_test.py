@@ -90,6 +90,7 @@ class Slurm(EngineTest):
     def test_detached_tasks_are_found_again_and_can_be_cancelled(self):
         self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")
         self.assertEqual(sum("glint-sixty" in line for line in self.slurm.jobs()), 6)
+        self.assertIn("Slurm has 6 tasks", self.glint("status", "sweep.toml", "--store", "store").stdout)
         self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")  # submits nothing twice
         self.assertEqual(sum("glint-sixty" in line for line in self.slurm.jobs()), 6)
         self.glint("cancel", "sweep.toml", "--store", "store")

@@ -147,6 +147,33 @@ class Keeping(SweepTest):
         self.assertEqual(store.read(id), {"n": 1})
         self.assertEqual(list((store.folder / "tmp").iterdir()), [])
 
+    def test_a_damaged_point_is_told_removed_and_run_again(self):
+        definition = {**TINY, "design": [{"keys": {"rt.warps": [2, 4, 8]}}]}
+        program, folder = self.stand_in(), self.folder / "store"
+        self.sweeps.run(definition, folder, glint=program)
+        first, second, third = points_in(folder)
+        store = self.sweeps.Store(folder)
+        (store.point(first) / "point.json").write_text("{")
+        with open(store.point(second) / "run.zip", "r+b") as file:
+            file.write(b"damage")
+        self.assertEqual(self.sweeps.collect("sweep", folder).damaged, [first])
+        self.assertIn("2 points with damaged files", self.glint("gc", "--store", folder, "--yes").stdout)
+        self.assertEqual(points_in(folder), [third])
+        self.assertEqual(self.sweeps.run(definition, folder, glint=program).done, 3)
+
+    def test_variables_that_change_results_are_those_of_the_plan_and_name_points(self):
+        from glint.sweeps.execution import Work
+        from glint.sweeps.planning import Program, plan
+        program, definition = self.stand_in('[ "$GLINT_ASSETS" = "%s" ] || exit 1' % self.folder), self.sweeps.read({**TINY, "retry": {"crash": 0}})
+        bare = plan(definition, Program(str(program)))[0]["id"]
+        os.environ["GLINT_ASSETS"] = str(self.folder)
+        point, store = plan(definition, Program(str(program)))[0], self.sweeps.Store(self.folder / "store")
+        work = Work.of(store, Program(str(program)), definition)
+        os.environ["GLINT_ASSETS"] = "/elsewhere"
+        self.addCleanup(os.environ.pop, "GLINT_ASSETS", None)
+        self.assertNotEqual(point["id"], bare)
+        self.assertEqual(work.run(point, store)["status"], "done")
+
     def test_a_folder_that_is_no_store_is_refused(self):
         (self.folder / "mine.txt").write_text("x")
         self.assertRaisesRegex(self.sweeps.SweepError, "no store", self.sweeps.Store, self.folder)

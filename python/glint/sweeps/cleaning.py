@@ -7,26 +7,29 @@ import os
 import pathlib
 import shutil
 
+from . import index
 from .execution import remove_left_scratch
 from .folder import SweepFolder
 from .store import Store
 
 
 def clean(store: Store, remove: bool) -> str:
-    """Returns what was, or would be, removed. It reads the whole store. Points that run at this moment stay."""
+    """Returns what was, or would be, removed. It reads the whole store, with every file. Points that run at this moment stay. Damaged points run again."""
     named = {point["id"] for name in SweepFolder.names(store) for point in SweepFolder.existing(store, name).points}
     unnamed = [id for id in store.points() if id not in named]
+    damaged = [id for id in store.points() if id in named and store.damage(id)]
     failures = [id for id in store.failed() if id not in named]
     scratch = store.left_over()
     if remove:
-        for id in unnamed:
+        for id in unnamed + damaged:
             _remove_point(store, id)
         for id in failures:
             store.forget_failure(id)
         for path in scratch:
             shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
         remove_left_scratch()
-    what = f"{len(unnamed)} points and {len(failures)} failures that no sweep names, {len(scratch)} scratch folders that were left over"
+        index.forget(store)
+    what = f"{len(unnamed)} points and {len(failures)} failures that no sweep names, {len(damaged)} points with damaged files, {len(scratch)} scratch folders that were left over"
     return f"{store.folder}: removed {what}" if remove else f"{store.folder}: {what} (--yes removes them)"
 
 

@@ -66,7 +66,7 @@ def distribute(cluster: Cluster, work: Work, points: list[dict[str, Any]], store
         wanted = [point for id, point in left.items() if id not in elsewhere]
         tasks = _tasks(cluster, work, wanted, place, attempt, owner)
         if tasks and not stop():
-            cluster.submit(tasks, max(point["memory"] for point in wanted), work.definition["threads"])
+            cluster.submit(tasks, max(point["memory"] for point in wanted) << attempt, work.definition["threads"])
         if detach:
             return True
         _watch(cluster, left, store, stop, tell, wait)

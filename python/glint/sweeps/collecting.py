@@ -42,6 +42,7 @@ class Collection:
     failures: list[dict[str, Any]]
     costs: list[dict[str, Any]]
     missing: int
+    damaged: list[str] = dataclasses.field(default_factory=list)  # ids of points whose record cannot be read
 
     def frame(self) -> Any:
         """Returns the rows as a pandas.DataFrame."""
@@ -101,8 +102,9 @@ def _collected(store: Store, folder: SweepFolder) -> Collection:
     failures = [record for id in dict.fromkeys(point["id"] for point in points) if id not in known and (record := store.read_failure(id))]
     costs = [{"id": id, **{name: record["cost"].get(name) for name in ("seconds", "peak_bytes", "host", "when")}, "failed_attempts": len(record["cost"]["failed_attempts"])}
              for id, record in known.items()]
-    different = len({point["id"] for point in points})
-    return Collection(folder.definition, str(store.folder), rows, keys, failures, costs, different - len(known) - len(failures))
+    others = {point["id"] for point in points} - set(known) - {record["id"] for record in failures}
+    damaged = sorted(id for id in others if store.has(id))
+    return Collection(folder.definition, str(store.folder), rows, keys, failures, costs, len(others) - len(damaged), damaged)
 
 
 def csv_of(rows: list[dict[str, Any]]) -> str:

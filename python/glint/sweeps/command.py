@@ -142,6 +142,8 @@ def _collect(given: argparse.Namespace) -> int:
     missing = f", {found.missing} not run yet" if found.missing else ""
     print(f"{found.definition.name}: {len(found.rows)} points, {len(found.failures)} failed{missing}")
     print("\n".join(f" {path}" for path in files))
+    if found.damaged:
+        print(f"warning: {len(found.damaged)} points have damaged files ({found.damaged[0]}): `glint sweep gc --yes` removes them, and `resume` runs them again", file=sys.stderr)
     return 0
 
 

@@ -21,7 +21,7 @@ from ..errors import GlintError, SweepError
 from ..fingerprint import file_hash
 from ..run_directory import Run
 from .definition import Definition
-from .planning import Program, stamp_of, words_of
+from .planning import VARIABLES, Program, stamp_of, words_of
 from .process import Ended, run_process, tail
 from .store import SCHEMA, Store
 
@@ -43,11 +43,13 @@ class Work:
     timeout: float | None
     memory_limit: int | None
     report: bool
+    variables: dict[str, str]  # of the environment, those that change results
 
     @staticmethod
     def of(store: Store, program: Program, definition: Definition) -> "Work":
         shared = {name: getattr(definition, name) for name in ("oracles", "stats", "threads")}
-        return Work(str(store.folder), program.path, program.hash, program.stamp, shared, definition.retry, definition.timeout, definition.memory_limit, definition.report)
+        return Work(str(store.folder), program.path, program.hash, program.stamp, shared, definition.retry, definition.timeout, definition.memory_limit, definition.report,
+                    {name: os.environ[name] for name in VARIABLES if name in os.environ})
 
     def check_program(self) -> None:
         """Raises SweepError when the program is another one than when the points were named by it."""
@@ -99,14 +101,18 @@ class Work:
 
     def _launch(self, point: dict[str, Any], folder: pathlib.Path, stop: Callable[[], bool]) -> Ended:
         shutil.rmtree(folder / "run", ignore_errors=True)
-        return run_process(self._words(point, str(folder / "run")), folder / "log.txt", self.timeout, self.memory_limit, stop)
+        return run_process(self._words(point, str(folder / "run")), folder / "log.txt", self.timeout, self.memory_limit, stop, self._environment())
+
+    def _environment(self) -> dict[str, str]:
+        """Returns this process's variables, but those that change results as they were when the points were named."""
+        return {**{name: value for name, value in os.environ.items() if name not in VARIABLES}, **self.variables}
 
     def _keep(self, point: dict[str, Any], store: Store, folder: pathlib.Path, ended: Ended, attempts: list[dict[str, Any]]) -> dict[str, Any]:
         run = Run(folder / "run", partial=ended.code == _PARTIAL)
         files = {"run.zip": _packed(folder / "run", folder / "run.zip")}
         if self.report:
             files["report.html"] = folder / "report.html"
-            subprocess.run([self.program, "report", str(folder / "run"), "-o", str(files["report.html"])], capture_output=True, check=True)
+            subprocess.run([self.program, "report", str(folder / "run"), "-o", str(files["report.html"])], capture_output=True, check=True, env=self._environment())
         record = {"schema": SCHEMA, **_description(point), "program": self.program_hash, "glint": [run.info["version"], run.info["git"]],
                   "partial": ended.code == _PARTIAL, "metrics": {name: run.metrics[name] for name, about in metrics().items() if "wall_seconds" not in about.formula},
                   "cost": {"seconds": round(ended.seconds, 4), "peak_bytes": ended.peak_bytes, "host": socket.gethostname(), "when": _now(), "failed_attempts": attempts},

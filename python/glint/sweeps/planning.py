@@ -17,6 +17,7 @@ from ..fingerprint import file_hash, files_of
 from .constraints import Constraint
 from .definition import Definition
 
+VARIABLES = ("GLINT_ASSETS", "GLINT_PLUGINS")  # of the environment, that change what a run computes
 SCHEMA = 1  # of a point; another one gives other ids
 _SHOWN = 10  # points that a message names
 _SLICE = 500  # points that one process checks at a time
@@ -64,7 +65,7 @@ def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
     names = _Contents(program)
     points = []
     for index, (one, answer) in enumerate(zip(kept, answers)):
-        identity = [SCHEMA, names.program, names.workload(one["workload"]), answer["config"], names.options(one["options"]), one["seed"], definition.stats, definition.report]
+        identity = [SCHEMA, names.program, names.assets, names.workload(one["workload"]), answer["config"], names.options(one["options"]), one["seed"], definition.stats, definition.report]
         made = {"index": index, "id": hashlib.sha256(json.dumps(identity).encode()).hexdigest()[:32], **one, "resolved": answer.get("keys") or {}, "memory": answer["memory"],
                 "weight": answer["weight"]}
         points.append(made)
@@ -176,6 +177,7 @@ class _Contents:
     def __init__(self, program: Program):
         self.program = [program.hash, program.facts["shaders"], program.facts["plugins"]]
         self._known: dict[str, Any] = {}
+        self.assets = self._contents(os.environ["GLINT_ASSETS"]) if os.environ.get("GLINT_ASSETS") else None
 
     def workload(self, name: str) -> Any:
         return self._known.setdefault(name, self._contents(name) or name)

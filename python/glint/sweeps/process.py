@@ -25,17 +25,18 @@ class Ended:
     by: str = ""  # "timeout" or "stop"
 
 
-def run_process(words: list[str], log: pathlib.Path, timeout: float | None, memory: int | None, stop: Callable[[], bool]) -> Ended:
+def run_process(words: list[str], log: pathlib.Path, timeout: float | None, memory: int | None, stop: Callable[[], bool], environment: dict[str, str] | None = None) -> Ended:
     """Runs a command with its output in `log`, and waits for its end.
 
     Args:
         timeout: Seconds after which it is killed, or None.
         memory: Bytes of addresses that it may have, or None.
         stop: Says whether the sweep is to end. The process is killed then.
+        environment: Its variables, or None for those of this process.
     """
     start = time.monotonic()
     with open(log, "wb") as out:
-        child = subprocess.Popen(_limited(memory) + words, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT, start_new_session=True)
+        child = subprocess.Popen(_limited(memory) + words, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT, start_new_session=True, env=environment)
     by, pidfd = "", os.pidfd_open(child.pid)
     try:
         while not select.select([pidfd], [], [], _wait(start, timeout))[0]:

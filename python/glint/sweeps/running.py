@@ -13,6 +13,7 @@ import signal
 import threading
 from typing import Any, Iterator, Mapping, TextIO
 
+from ..errors import SweepError
 from ..launch import find_glint
 from .cluster import Cluster, distribute
 from .definition import Definition
@@ -50,6 +51,7 @@ class Status:
     done: int
     failures: list[dict[str, Any]]
     running: list[dict[str, Any]]
+    tasks: int = 0  # of Slurm, that wait or run
     stopped: int = 0
 
     @property
@@ -201,7 +203,17 @@ def _status(store: Store, folder: SweepFolder, points: list[dict[str, Any]]) -> 
     different = {point["id"]: point for point in points}
     left = [id for id in different if not store.has(id)]
     failures = [record for id in sorted(store.failed() & set(left)) if (record := store.read_failure(id))]
-    return Status(folder.name, len(points), len(different), len(different) - len(left), failures, list(folder.progress()))
+    return Status(folder.name, len(points), len(different), len(different) - len(left), failures, list(folder.progress()), slurm_tasks(folder))
+
+
+def slurm_tasks(folder: SweepFolder) -> int:
+    """Returns how many tasks of a sweep Slurm has, or 0 where nobody submitted any."""
+    if not shutil.which("squeue") or not any(folder.place.glob("runs/*/0-*.json")):
+        return 0
+    try:
+        return len(SlurmCluster(folder.definition, folder, "").live())
+    except SweepError:
+        return 0
 
 
 def text_of(found: Status) -> str:
@@ -211,6 +223,8 @@ def text_of(found: Status) -> str:
     for note in found.running:
         left = f", {duration(note['left'])} left" if note.get("left") is not None else ""
         lines.append(f"runs on {note['host']}, process {note['pid']}: {note['done']} of {note['total']}{left}")
+    if found.tasks:
+        lines.append(f"Slurm has {found.tasks} tasks that wait or run")
     kinds = collections.Counter(record["kind"] for record in found.failures)
     if kinds:
         lines.append("failures: " + ", ".join(f"{count} {kind}" for kind, count in kinds.most_common()))

@@ -15,6 +15,7 @@ import struct
 import threading
 import time
 import zipfile
+import zlib
 from typing import Any, Iterator
 
 from ..documents import read_json
@@ -143,6 +144,17 @@ class Store:
     def scratch(self, id: str) -> pathlib.Path:
         """Returns a name that nobody else uses. It says who uses it, so that gc knows what is left over."""
         return self.folder / "tmp" / f"{socket.gethostname()}-{os.getpid()}-{next(self._count)}-{id[:8]}"
+
+    def damage(self, id: str) -> str:
+        """Returns what is wrong with a point that is there, or an empty text. It reads all of its files."""
+        try:
+            for name, about in self.read(id)["files"].items():
+                data = (self.point(id) / name).read_bytes()
+                if len(data) != about["bytes"] or f"{zlib.crc32(data):08x}" != about["crc32"]:
+                    return f"{name} is not as the run left it"
+        except (OSError, GlintError, KeyError, TypeError, AttributeError) as error:
+            return f"its record cannot be read: {error}"
+        return ""
 
     def points(self) -> Iterator[str]:
         """Gives the ids of all points. It reads every folder of the store."""
