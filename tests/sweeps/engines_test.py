@@ -16,7 +16,7 @@ import one_node_slurm
 from sweeps_case import ROOT, SKIPPED, SweepTest, contents, main, need, points_in
 
 SWEEP = """
-name = "sixty"
+name = "six-ty"
 workloads = ["WKND_SH", "SHIP_SH"]
 [run]
 size = "16x16"
@@ -73,6 +73,9 @@ class Slurm(EngineTest):
         self.some(6)
         child.send_signal(signal.SIGKILL)
         child.wait()
+        self.write(SWEEP.replace('"six-ty"', '"six"').replace("[1, 2, 3, 4, 6, 8]", "[1]"), "six.toml")  # Its name begins the other's.
+        self.glint("run", "six.toml", "--store", "store")
+        self.glint("cancel", "six.toml", "--store", "store")
         self.until(self.slurm.tasks)
         os.kill(self.slurm.tasks()[0], signal.SIGKILL)
         running = next((line.split("|")[0] for line in self.slurm.jobs() if "RUNNING" in line), None)
@@ -82,23 +85,23 @@ class Slurm(EngineTest):
         status = self.glint("status", "sweep.toml", "--store", "store").stdout
         self.assertIn("60 points", status)
         jobs = {line.split("|")[1] for line in self.slurm.jobs()}
-        self.assertTrue(all(name.startswith("glint-sixty-") for name in jobs), jobs)
+        self.assertTrue(all(name.startswith("glint-six-ty-") for name in jobs), jobs)
         self.glint("resume", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "5")
         self.all_are_those_of_the_local_pool()
         self.assertEqual(self.slurm.tasks(), [])
 
     def test_detached_tasks_are_found_again_and_can_be_cancelled(self):
         self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")
-        self.assertEqual(sum("glint-sixty" in line for line in self.slurm.jobs()), 6)
+        self.assertEqual(sum("glint-six-ty" in line for line in self.slurm.jobs()), 6)
         self.assertIn("Slurm has 6 tasks", self.glint("status", "sweep.toml", "--store", "store").stdout)
         self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")  # submits nothing twice
-        self.assertEqual(sum("glint-sixty" in line for line in self.slurm.jobs()), 6)
+        self.assertEqual(sum("glint-six-ty" in line for line in self.slurm.jobs()), 6)
         self.glint("cancel", "sweep.toml", "--store", "store")
-        self.until(lambda: not any("glint-sixty" in line and "COMPLETING" not in line for line in self.slurm.jobs()))
+        self.until(lambda: not any("glint-six-ty" in line and "COMPLETING" not in line for line in self.slurm.jobs()))
         self.until(lambda: not self.slurm.tasks())
         kept = len(points_in(self.store))
         self.assertLess(kept, 60)
-        self.glint("resume", "sixty", "--engine", "slurm", "--store", "store")
+        self.glint("resume", "six-ty", "--engine", "slurm", "--store", "store")
         self.all_are_those_of_the_local_pool()
 
     def test_ctrl_c_takes_all_tasks_back(self):

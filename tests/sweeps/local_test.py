@@ -228,7 +228,7 @@ class Killed(SweepTest):
         source, kept = random.Random(23), set()
         for _ in range(50):
             child = subprocess.Popen([sys.executable, "-c", code, program], cwd=self.folder)
-            time.sleep(source.uniform(0.1, 0.55))
+            time.sleep(source.uniform(0.3, 0.9))
             child.kill()
             child.wait()
             now = set(points_in(self.folder / "store"))

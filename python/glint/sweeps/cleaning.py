@@ -10,6 +10,7 @@ import shutil
 from . import index
 from .execution import remove_left_scratch
 from .folder import SweepFolder
+from .running import slurm_tasks
 from .store import Store
 
 
@@ -19,7 +20,8 @@ def clean(store: Store, remove: bool) -> str:
     unnamed = [id for id in store.points() if id not in named]
     damaged = [id for id in store.points() if id in named and store.damage(id)]
     failures = [id for id in store.failed() if id not in named]
-    scratch = store.left_over()
+    folders = [SweepFolder.existing(store, name) for name in SweepFolder.names(store)]
+    scratch = store.left_over() + [run for folder in folders for run in folder.ended_runs(with_tasks=not slurm_tasks(folder))]
     if remove:
         for id in unnamed + damaged:
             _remove_point(store, id)
@@ -29,7 +31,7 @@ def clean(store: Store, remove: bool) -> str:
             shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
         remove_left_scratch()
         index.forget(store)
-    what = f"{len(unnamed)} points and {len(failures)} failures that no sweep names, {len(damaged)} points with damaged files, {len(scratch)} scratch folders that were left over"
+    what = f"{len(unnamed)} points and {len(failures)} failures that no sweep names, {len(damaged)} points with damaged files, {len(scratch)} folders that killed processes left"
     return f"{store.folder}: removed {what}" if remove else f"{store.folder}: {what} (--yes removes them)"
 
 

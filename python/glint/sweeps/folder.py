@@ -73,6 +73,18 @@ class SweepFolder:
     def runs(self) -> list[pathlib.Path]:
         return sorted(path for path in (self.place / "runs").glob("*") if path.is_dir())
 
+    def ended_runs(self, with_tasks: bool) -> list[pathlib.Path]:
+        """Returns the folders of runs of this host whose process was killed; those that handed out tasks only when asked for."""
+        out = []
+        for run in self.runs():
+            try:
+                note = read_json(run / "progress.json")
+            except (OSError, SchemaError):
+                continue
+            if note.get("host") == socket.gethostname() and not os.path.exists(f"/proc/{note.get('pid')}") and (with_tasks or not any(run.glob("0-*.json"))):
+                out.append(run)
+        return out
+
     def stop_all(self) -> int:
         """Asks all runs of the sweep to stop, wherever they are. Returns how many there are."""
         for run in self.runs():

@@ -134,6 +134,8 @@ def _run_rest(definition: Definition, engine: Engine, program: Program, store: S
     if not left:
         return 0
     remove_left_scratch()
+    for ended in folder.ended_runs(with_tasks=False):
+        shutil.rmtree(ended, ignore_errors=True)
     place = folder.new_run()
     progress = Progress(len(different), kept, {id: point["weight"] for id, point in left.items()}, lambda facts: folder.note(place, facts), out)
     work = Work.of(store, program, definition)

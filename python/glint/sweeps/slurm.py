@@ -70,26 +70,25 @@ class SlurmCluster(Cluster):
         return max(1, int(found[1]) - 1 if found else _MAX_ARRAY - 1)
 
     def live(self) -> set[pathlib.Path]:
-        out = set()
-        prefixes = {self._prefix(run.name): run for run in self._folder.runs()}
-        for name, index, _ in self._queue():
-            for prefix, run in prefixes.items():
-                if name.startswith(prefix):
-                    attempt, offset = name.removeprefix(prefix).split("-")
-                    out.add(run / f"{attempt}-{int(offset) + int(index)}.json")
-        return out
+        return {task for _, task in self._queue()}
 
-    def _queue(self) -> list[tuple[str, str, str]]:
-        """Returns name, index and job of every array task of this sweep that waits or runs."""
-        words = ["squeue", "--noheader", "--array", "--me", "--format=%j|%K|%A", "--states=PENDING,RUNNING,SUSPENDED,CONFIGURING,COMPLETING,REQUEUED,RESIZING,STOPPED,PREEMPTED"]
+    def _queue(self) -> list[tuple[str, pathlib.Path]]:
+        """Returns the job's name and the task of everything of this sweep that waits or runs. Another sweep's name may begin with this one's."""
+        words = ["squeue", "--noheader", "--array", "--me", "--format=%j|%K", "--states=PENDING,RUNNING,SUSPENDED,CONFIGURING,COMPLETING,REQUEUED,RESIZING,STOPPED,PREEMPTED"]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         if done.returncode:
             raise SweepError(f"squeue does not answer, and what was submitted goes on: {done.stderr.strip()}\n  note: `glint sweep resume` finds it again")
-        rows = [line.split("|") for line in done.stdout.splitlines()]
-        return [(name, index, job) for name, index, job in (row for row in rows if len(row) == 3) if name.startswith(f"glint-{self._folder.name}-") and index.isdigit()]
+        runs = {self._prefix(run.name): run for run in self._folder.runs()}
+        out = []
+        for line in done.stdout.splitlines():
+            if match := re.fullmatch(r"(.*-)(\d+)-(\d+)\|(\d+)", line.strip()):
+                prefix, attempt, offset, index = match.groups()
+                if prefix in runs:
+                    out.append((line.partition("|")[0], runs[prefix] / f"{attempt}-{int(offset) + int(index)}.json"))
+        return out
 
     def cancel(self) -> None:
-        names = sorted({name for name, _, _ in self._queue()})
+        names = sorted({name for name, _ in self._queue()})
         if names:
             subprocess.run(["scancel", "--me", f"--name={','.join(names)}"], capture_output=True, check=False)
 
