@@ -104,6 +104,19 @@ class Effects(SweepTest):
             self.assertAlmostEqual(found[key][0], first / (product + line), delta=0.05)
             self.assertAlmostEqual(found[key][1], total / (product + line), delta=0.05)
 
+    def test_a_sweep_by_saltelli_has_total_indices_of_its_own_keys(self):
+        if not importlib.util.find_spec("scipy"):
+            print("SKIPPED: collect_test.py Effects: no scipy, so no sweep was sampled by sobol or saltelli")
+            return
+        keys = {"memory.l2.latency": {"low": 50, "high": 400, "scale": "log"}, "rt.warps": {"low": 1, "high": 8}}
+        definition = {**TINY, "design": [{"method": "saltelli", "points": 4, "keys": keys}]}
+        found = self.sweeps.run(definition, self.folder / "store")
+        self.assertEqual((found.points, found.left), (16, 0))
+        effects = self.sweeps.collect("sweep", self.folder / "store").effects("cycles")
+        self.assertEqual(effects[0].key, "memory.l2.latency")
+        self.assertGreater(effects[0].total, 0.5)
+        self.assertTrue(all(effect.total is not None and effect.interval is None for effect in effects))
+
     def test_the_front_is_what_no_point_beats(self):
         from glint.sweeps.sensitivity import pareto
         source = random.Random(7)
