@@ -4,7 +4,8 @@
 """usage: vulkan_entry.py REGISTRY ANNOUNCED SOURCE_DIR OUTPUT_DIR
 
 REGISTRY is vk.xml, ANNOUNCED is vulkan/announced.toml, and SOURCE_DIR is the folder in which commands are written by hand: a
-function `VkResult CreateBuffer(Device& device, ...)` at the start of a line there is the command vkCreateBuffer. Writes
+function `VkResult CreateBuffer(Device& device, ...)` at the start of a line there is the command vkCreateBuffer. A file
+newer_extensions.xml beside ANNOUNCED describes extensions that the registry may be too old for. Writes
 entry_table.cpp and announced.cpp to OUTPUT_DIR. A file whose text would not change is not touched.
 """
 import pathlib
@@ -75,6 +76,14 @@ class Registry:
                          and tuple(map(int, f.get("number").split("."))) <= NEWEST]
         self.formats = [e.get("name") for e in root.iterfind("enums[@name='VkFormat']/enum") if e.get("value")]
         self.extensions = {e.get("name"): e for e in root.iterfind("extensions/extension") if is_vulkan(e)}
+
+    def add_newer(self, path):
+        """Takes those extensions of a file that the registry does not have, with their structures."""
+        root = xml.parse(path).getroot()
+        for element in root.iterfind("extensions/extension"):
+            self.extensions.setdefault(element.get("name"), element)
+        for struct in root.iterfind("types/type[@category='struct']"):
+            self.structs.setdefault(struct.get("name"), struct)
 
     def command(self, name):
         while name in self.aliases:
@@ -264,6 +273,9 @@ def write(path, text):
 
 def main(registry_path, announced_path, source_dir, output_dir):
     registry = Registry(registry_path)
+    newer = pathlib.Path(announced_path).with_name("newer_extensions.xml")
+    if newer.exists():
+        registry.add_newer(newer)
     announced = tomllib.loads(pathlib.Path(announced_path).read_text())
     output = pathlib.Path(output_dir)
     output.mkdir(parents=True, exist_ok=True)

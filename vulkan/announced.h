@@ -39,7 +39,9 @@ bool is_announced(std::span<const VkExtensionProperties> extensions, std::string
 struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceVulkan12Properties,
                           VkPhysicalDeviceVulkan13Properties,
-                          VkPhysicalDeviceAccelerationStructurePropertiesKHR {
+                          VkPhysicalDeviceAccelerationStructurePropertiesKHR,
+                          VkPhysicalDeviceRayTracingPipelinePropertiesKHR,
+                          VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV {
   // The structures of 1.1 rename these.
   VkShaderStageFlags supportedStages = 0;
   VkSubgroupFeatureFlags supportedOperations = 0;

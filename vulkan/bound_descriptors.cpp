@@ -102,7 +102,7 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
     case DescriptorKind::TexelBuffer:
     case DescriptorKind::Image:
       return bind_images(device, builder, place, number);
-    case DescriptorKind::Structure:
+    case DescriptorKind::AccelerationStructure:
       return bind_structures(builder, place, number);
   }
 }

@@ -8,7 +8,7 @@ void VkCommandBuffer_T::reset() {
   state = State::Initial;
   failure = VK_SUCCESS;
   commands.clear();
-  bound = {};
+  bound = bound_for_rays = {};
 }
 
 void VkCommandBuffer_T::append_to(glint::vulkan::CommandList& list) const {
@@ -68,7 +68,7 @@ VkResult ResetCommandBuffer(CommandBuffer& commands, VkCommandBufferResetFlags) 
 
 void CmdExecuteCommands(CommandBuffer& commands, uint32_t count, const VkCommandBuffer* secondaries) {
   for (uint32_t i = 0; i < count; ++i) secondaries[i]->append_to(commands.commands);
-  commands.bound = {};  // Vulkan says that nothing stays bound.
+  commands.bound = commands.bound_for_rays = {};  // Vulkan says that nothing stays bound.
 }
 
 // There is one device in the group.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -29,6 +30,7 @@ struct Bindings {
   VkPipeline pipeline = nullptr;
   std::map<uint32_t, BoundSet> sets;  // by number
   std::array<std::byte, kMaxPushConstantBytes> push_constants{};
+  std::optional<uint32_t> stack_bytes;  // of a ray-tracing pipeline whose stack has a dynamic size
 };
 
 }  // namespace glint::vulkan
@@ -58,7 +60,8 @@ struct VkCommandBuffer_T : glint::vulkan::Dispatchable {
   State state = State::Initial;
   VkResult failure = VK_SUCCESS;  // of the first command that could not be recorded
   glint::vulkan::CommandList commands;
-  glint::vulkan::Bindings bound;
+  // What is bound for dispatches, and what is bound for rays. Push constants are written to both.
+  glint::vulkan::Bindings bound, bound_for_rays;
 };
 
 struct VkCommandPool_T {

@@ -58,7 +58,7 @@ void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
     to.texels = *static_cast<const VkBufferView*>(info);
     return;
   }
-  if (kind == DescriptorKind::Structure) {
+  if (kind == DescriptorKind::AccelerationStructure) {
     const auto from = *static_cast<const VkAccelerationStructureKHR*>(info);
     to.structure = from ? from->address : 0;
     return;
@@ -75,7 +75,7 @@ const void* info_of(const VkWriteDescriptorSet& from, uint32_t element) {
       return from.pBufferInfo + element;
     case DescriptorKind::TexelBuffer:
       return from.pTexelBufferView + element;
-    case DescriptorKind::Structure: {
+    case DescriptorKind::AccelerationStructure: {
       const auto* const more = find_in_chain<VkWriteDescriptorSetAccelerationStructureKHR>(
           &from, VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR);
       if (!more || element >= more->accelerationStructureCount)
@@ -133,7 +133,7 @@ DescriptorKind kind_of(VkDescriptorType type) {
     case VK_DESCRIPTOR_TYPE_SAMPLER:
       return DescriptorKind::Sampler;
     case VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR:
-      return DescriptorKind::Structure;
+      return DescriptorKind::AccelerationStructure;
     default:
       return DescriptorKind::Image;
   }
@@ -179,7 +179,8 @@ VkResult CreateDescriptorUpdateTemplate(Device&, const VkDescriptorUpdateTemplat
                                         VkDescriptorUpdateTemplate* out) {
   *out = new VkDescriptorUpdateTemplate_T{
       {info->pDescriptorUpdateEntries, info->pDescriptorUpdateEntries + info->descriptorUpdateEntryCount},
-      info->set};
+      info->set,
+      info->pipelineBindPoint};
   return VK_SUCCESS;
 }
 void DestroyDescriptorUpdateTemplate(Device&, VkDescriptorUpdateTemplate with) {

@@ -23,7 +23,14 @@ struct Descriptor {
 };
 
 // Says what descriptors of a type refer to.
-enum class DescriptorKind : uint8_t { Buffer, InlineBlock, TexelBuffer, Image, Sampler, Structure };
+enum class DescriptorKind : uint8_t {
+  Buffer,
+  InlineBlock,
+  TexelBuffer,
+  Image,
+  Sampler,
+  AccelerationStructure
+};
 DescriptorKind kind_of(VkDescriptorType type);
 // Returns whether a descriptor of the type has a sampler, alone or with its image.
 bool has_sampler(VkDescriptorType type);
@@ -66,7 +73,8 @@ struct VkDescriptorPool_T {
 
 struct VkDescriptorUpdateTemplate_T {
   std::vector<VkDescriptorUpdateTemplateEntry> entries;
-  uint32_t set = 0;  // of a template that pushes
+  uint32_t set = 0;                                            // of a template that pushes
+  VkPipelineBindPoint point = VK_PIPELINE_BIND_POINT_COMPUTE;  // of a template that pushes
 };
 
 namespace glint::vulkan {

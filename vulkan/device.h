@@ -44,7 +44,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   VkDeviceSize allocated_bytes = 0;               // of the heap
   std::set<VkAccelerationStructureKHR> structures;
   // They give objects names.
-  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0;
+  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, ray_pipelines_made = 0;
   glint::vulkan::DeviceClock clock;
   glint::vulkan::Recording recording;
   glint::pipeline::Device gpu;  // runs launches

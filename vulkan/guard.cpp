@@ -94,7 +94,7 @@ std::unique_lock<std::mutex> lock_of(Queue* queue) {
 }
 
 void say_not_written(const char* command) {
-  write_to_stderr(fmt::format("{} is not there: the device does compute and transfer only", command));
+  write_to_stderr(fmt::format("{} is not there: the device does no graphics", command));
   auto& [mutex, names] = CommandsNotThere::instance();
   const std::lock_guard lock(mutex);
   names.insert(command);

@@ -45,6 +45,7 @@ inline constexpr VkDeviceSize kMaxAllocationBytes = VkDeviceSize{1} << 32;
 inline constexpr uint32_t kAllMemoryTypes = 0b111;
 inline constexpr uint32_t kMaxPushConstantBytes = 256;
 inline constexpr VkDeviceSize kHostPointerAlignment = 4096;
+inline constexpr uint32_t kMaxRayRecursion = 31, kMaxRays = 1u << 30;
 
 // Says what the device can do with formats, sizes and numbers.
 VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_universal);

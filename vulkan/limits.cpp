@@ -5,8 +5,10 @@
 #include <cstring>
 #include <fmt/format.h>
 
+#include "core/reorder.h"
 #include "exec/block.h"
 #include "isa/descriptors.h"
+#include "pipeline/binding_table.h"
 #include "vulkan/instance.h"
 
 namespace glint::vulkan {
@@ -14,7 +16,10 @@ namespace {
 
 // A set has kMaxBindings bindings, each of which may be an array.
 constexpr uint32_t kManyDescriptors = 1 << 20;
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_RAYGEN_BIT_KHR |
+                                       VK_SHADER_STAGE_ANY_HIT_BIT_KHR | VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR |
+                                       VK_SHADER_STAGE_MISS_BIT_KHR | VK_SHADER_STAGE_INTERSECTION_BIT_KHR |
+                                       VK_SHADER_STAGE_CALLABLE_BIT_KHR;
 // Choice: launches have threads of 32-bit numbers, so a whole axis of the largest blocks fits.
 constexpr uint32_t kMaxGroups = (1u << 22) - 1;
 // Vulkan asks for images of four samples, but only in formats that can be attachments, and here none can.
@@ -89,6 +94,9 @@ void set_universal_limits(VkPhysicalDeviceLimits& l) {
   l.maxFragmentCombinedOutputResources = 32;
   l.maxVertexOutputComponents = l.maxFragmentInputComponents = 128;
   l.maxDrawIndexedIndexValue = 0xffff'ffff;
+  l.maxGeometryShaderInvocations = 32, l.maxGeometryOutputVertices = 256;
+  l.maxGeometryInputComponents = l.maxGeometryOutputComponents = 64;
+  l.maxGeometryTotalOutputComponents = 1024;
 }
 
 template <size_t N>
@@ -160,6 +168,19 @@ void set_acceleration_structures(DeviceProperties& p) {
   p.minAccelerationStructureScratchOffsetAlignment = 64;
 }
 
+void set_ray_pipelines(DeviceProperties& p, const pipeline::GpuParams& gpu) {
+  p.shaderGroupHandleSize = p.shaderGroupHandleCaptureReplaySize = exec::kHandleBytes;
+  p.shaderGroupHandleAlignment = pipeline::kHandleAlignment;
+  p.shaderGroupBaseAlignment = pipeline::kBaseAlignment;
+  p.maxShaderGroupStride = pipeline::kMaxStride;
+  p.maxRayRecursionDepth = kMaxRayRecursion;
+  p.maxRayDispatchInvocationCount = kMaxRays;
+  p.maxRayHitAttributeSize = 32;
+  const bool reorders = gpu.core.reorder.make({})->where() == core::Reorder::Where::Calls;
+  p.rayTracingInvocationReorderReorderingHint = reorders ? VK_RAY_TRACING_INVOCATION_REORDER_MODE_REORDER_NV
+                                                         : VK_RAY_TRACING_INVOCATION_REORDER_MODE_NONE_NV;
+}
+
 }  // namespace
 
 VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_universal) {
@@ -178,7 +199,7 @@ VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_univers
   return l;
 }
 
-DeviceProperties properties_of(const pipeline::GpuParams&, const std::string& preset) {
+DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset) {
   DeviceProperties p{};
   set_text(p.driverName, "Glint");
   set_text(p.driverInfo, fmt::format("preset {}, functional", preset));
@@ -189,6 +210,7 @@ DeviceProperties properties_of(const pipeline::GpuParams&, const std::string& pr
   set_descriptor_indexing(p);
   set_inline_uniform_blocks(p);
   set_acceleration_structures(p);
+  set_ray_pipelines(p, gpu);
   p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
   p.maxMultiviewViewCount = 6, p.maxMultiviewInstanceIndex = (1u << 27) - 1;
   p.maxMemoryAllocationSize = p.maxBufferSize = kMaxAllocationBytes;

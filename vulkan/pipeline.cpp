@@ -1,4 +1,4 @@
-// Makes shader modules, pipeline layouts, pipeline caches and compute pipelines.
+// Makes shader modules, pipeline layouts, pipeline caches and compute pipelines, and compiles pipelines.
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/pipeline.h"
 
@@ -6,8 +6,11 @@
 #include <cstddef>
 #include <cstring>
 #include <fmt/format.h>
+#include <utility>
 
 #include "isa/program.h"
+#include "isa/stage.h"
+#include "pipeline/software_traversal.h"
 #include "vulkan/chain.h"
 #include "vulkan/device.h"
 
@@ -19,6 +22,25 @@ std::shared_ptr<const std::vector<uint32_t>> words_of(const VkShaderModuleCreate
     throw Refusal(fmt::format("{} bytes are not a SPIR-V module", info.codeSize));
   return std::make_shared<const std::vector<uint32_t>>(info.pCode,
                                                        info.pCode + info.codeSize / sizeof(uint32_t));
+}
+
+isa::Stage isa_stage(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_RAYGEN_BIT_KHR:
+      return isa::Stage::RayGeneration;
+    case VK_SHADER_STAGE_MISS_BIT_KHR:
+      return isa::Stage::Miss;
+    case VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR:
+      return isa::Stage::ClosestHit;
+    case VK_SHADER_STAGE_ANY_HIT_BIT_KHR:
+      return isa::Stage::AnyHit;
+    case VK_SHADER_STAGE_INTERSECTION_BIT_KHR:
+      return isa::Stage::Intersection;
+    case VK_SHADER_STAGE_CALLABLE_BIT_KHR:
+      return isa::Stage::Callable;
+    default:
+      return isa::Stage::Compute;
+  }
 }
 
 std::map<uint32_t, uint64_t> constants_of(const VkSpecializationInfo* info) {
@@ -36,21 +58,29 @@ std::map<uint32_t, uint64_t> constants_of(const VkSpecializationInfo* info) {
 
 std::unique_ptr<VkPipeline_T> pipeline_of(Device& device, const VkComputePipelineCreateInfo& info) {
   auto made = std::make_unique<VkPipeline_T>();
-  if (info.stage.module) {
-    made->words = info.stage.module->words, made->name = info.stage.module->name;
-  } else if (const auto* module = find_in_chain<VkShaderModuleCreateInfo>(
-                 &info.stage, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
-    made->words = words_of(*module), made->name = fmt::format("shader {}", ++device.shaders_made);
-  } else {
-    throw Refusal("a pipeline needs a shader module");
-  }
-  made->entry_point = info.stage.pName;
-  made->constants = constants_of(info.stage.pSpecializationInfo);
+  made->stages.push_back(stage_of(device, info.stage));
+  made->name = made->stages[0].name;
   made->layout = *info.layout;
   return made;
 }
 
 }  // namespace
+
+PipelineStage stage_of(Device& device, const VkPipelineShaderStageCreateInfo& info) {
+  PipelineStage out;
+  out.stage = info.stage;
+  if (info.module) {
+    out.words = info.module->words, out.name = info.module->name;
+  } else if (const auto* module = find_in_chain<VkShaderModuleCreateInfo>(
+                 &info, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
+    out.words = words_of(*module), out.name = fmt::format("shader {}", ++device.shaders_made);
+  } else {
+    throw Refusal("a pipeline needs a shader module");
+  }
+  out.entry_point = info.pName;
+  out.constants = constants_of(info.pSpecializationInfo);
+  return out;
+}
 
 VkResult CreateShaderModule(Device& device, const VkShaderModuleCreateInfo* info, VkShaderModule* out) {
   *out = new VkShaderModule_T{words_of(*info), fmt::format("shader {}", ++device.shaders_made)};
@@ -114,13 +144,23 @@ const glint::pipeline::LinkedShaders& VkPipeline_T::compiled(VkDevice_T& device)
   using namespace glint;
   if (compiled_) return *compiled_;
   const pipeline::GpuParams& gpu = device.physical.gpu;
+  const pipeline::CompilerParams compiler = pipeline::compiler_for(gpu);
+  std::vector<isa::Program> programs;
+  std::vector<frontend::Binding> bindings;
   Diagnostics notes;
-  // Choice: the driver does not validate modules. The validation layer does, where the application asks for
-  // it.
-  const pipeline::CompiledStage stage =
-      pipeline::compile_stage(*words, {name, entry_point, constants, frontend::Validity::Known}, gpu.compiler,
-                              notes, &device.shader_cache);
-  compiled_ = std::make_unique<const pipeline::LinkedShaders>(
-      std::vector{stage.program}, stage.reflection.bindings, gpu, &device.shader_cache);
+  for (const vulkan::PipelineStage& each : stages) {
+    // Choice: the driver does not validate modules. The validation layer does, where the application asks
+    // for it.
+    pipeline::CompiledStage made = pipeline::compile_stage(
+        *each.words, {each.name, each.entry_point, each.constants, frontend::Validity::Known}, compiler,
+        notes, &device.shader_cache);
+    if (made.program.stage != vulkan::isa_stage(each.stage))
+      throw UserError(fmt::format("entry point '{}' of {} is of stage {}, and the pipeline wants another",
+                                  each.entry_point, each.name, isa::name_of(made.program.stage)));
+    programs.push_back(std::move(made.program));
+    bindings.insert(bindings.end(), made.reflection.bindings.begin(), made.reflection.bindings.end());
+  }
+  compiled_ = std::make_unique<const pipeline::LinkedShaders>(std::move(programs), bindings, gpu,
+                                                              &device.shader_cache);
   return *compiled_;
 }

@@ -1,12 +1,14 @@
-// Holds shader modules, pipeline layouts and compute pipelines, which are compiled when they first run.
+// Holds shader modules, pipeline layouts and pipelines, which are compiled when they first run.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pipeline/binding_table.h"
 #include "pipeline/linked_shaders.h"
 #include "vulkan/descriptor_set.h"
 
@@ -21,16 +23,39 @@ struct VkPipelineLayout_T {
 
 struct VkPipelineCache_T {};
 
-// Is a compute pipeline. Applications make hundreds that they never run, so it is compiled when it first
-// runs.
-struct VkPipeline_T {
+namespace glint::vulkan {
+
+struct PipelineStage {
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT;
   std::shared_ptr<const std::vector<uint32_t>> words;
   std::string entry_point, name;
   std::map<uint32_t, uint64_t> constants;  // by constant_id
+};
+// Throws Refusal for a stage without a module.
+PipelineStage stage_of(Device& device, const VkPipelineShaderStageCreateInfo& info);
+
+// Is what a ray-tracing pipeline has besides its stages.
+struct RayGroups {
+  uint64_t pipeline = 0;                      // the number that the handles of the groups hold
+  std::vector<pipeline::ShaderGroup> groups;  // with numbers of stages
+  uint32_t max_trace_depth = 0;
+  bool has_dynamic_stack = false;
+  bool has_said_depth = false;  // that traces are nested deeper than the application said
+};
+
+}  // namespace glint::vulkan
+
+// Is a compute pipeline, a ray-tracing pipeline or a library of one. Applications make hundreds that they
+// never run, so it is compiled when it first runs.
+struct VkPipeline_T {
+  std::string name;
+  std::vector<glint::vulkan::PipelineStage> stages;  // of a compute pipeline: one
+  std::optional<glint::vulkan::RayGroups> rays;      // nothing: a compute pipeline
   VkPipelineLayout_T layout;
   uint64_t launches = 0;  // so far
 
-  // Returns the compiled shader. Throws UserError or UnsupportedError when it cannot be compiled.
+  // Returns the compiled shaders, in the order of the stages. Throws UserError or UnsupportedError when one
+  // cannot be compiled.
   const glint::pipeline::LinkedShaders& compiled(VkDevice_T& device);
 
  private:

@@ -7,12 +7,14 @@
 #include "vulkan/device.h"
 #include "vulkan/launch.h"
 #include "vulkan/memory.h"
+#include "vulkan/pipeline.h"
 
 namespace glint::vulkan {
 namespace {
 
 void check_pipeline(const CommandBuffer& commands) {
-  if (!commands.bound.pipeline) throw Refusal("no compute pipeline is bound");
+  if (!commands.bound.pipeline || commands.bound.pipeline->rays)
+    throw Refusal("no compute pipeline is bound");
 }
 
 }  // namespace

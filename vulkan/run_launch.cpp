@@ -18,10 +18,14 @@ namespace {
 
 // Returns a number for the work of a launch, by which comparisons of runs tell whether it is the same.
 uint64_t hash_of(const LaunchOf& launch) {
-  const std::vector<uint32_t>& words = *launch.pipeline.words;
-  std::string text(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t));
-  text += fmt::format("{} {} {}", launch.pipeline.entry_point, launch.kind, fmt::join(launch.size, " "));
-  for (const auto& [id, value] : launch.pipeline.constants) text += fmt::format(" {}={}", id, value);
+  std::string text;
+  for (const PipelineStage& stage : launch.pipeline.stages) {
+    const std::vector<uint32_t>& words = *stage.words;
+    text.append(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t));
+    text += stage.entry_point;
+    for (const auto& [id, value] : stage.constants) text += fmt::format(" {}={}", id, value);
+  }
+  text += fmt::format("{} {}", launch.kind, fmt::join(launch.size, " "));
   return report::fnv1a(text);
 }
 

@@ -137,6 +137,8 @@ BuildInput input_of(const VkAccelerationStructureBuildGeometryInfoKHR& info,
   out.is_update = info.mode == VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
   out.allows_update = (info.flags & VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR) != 0;
   out.to = info.dstAccelerationStructure;
+  if (info.geometryCount && !info.pGeometries && !info.ppGeometries)
+    throw Refusal("a build has neither pGeometries nor ppGeometries");
   for (uint32_t i = 0; i < info.geometryCount; ++i)
     out.geometries.push_back(info.pGeometries ? info.pGeometries[i] : *info.ppGeometries[i]);
   if (ranges) out.ranges.assign(ranges, ranges + info.geometryCount);

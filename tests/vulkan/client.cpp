@@ -215,9 +215,27 @@ VkBuffer Client::import(void* bytes, VkDeviceSize size) {
   return out;
 }
 
-VkShaderModule Client::module(const std::string& glsl) {
+VkShaderModule Client::module(const std::string& glsl, VkShaderStageFlagBits stage, const std::string& path) {
+  const auto [name, own_stage] = [&]() -> std::pair<const char*, isa::Stage> {
+    switch (stage) {
+      case VK_SHADER_STAGE_RAYGEN_BIT_KHR:
+        return {"client.rgen", isa::Stage::RayGeneration};
+      case VK_SHADER_STAGE_MISS_BIT_KHR:
+        return {"client.rmiss", isa::Stage::Miss};
+      case VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR:
+        return {"client.rchit", isa::Stage::ClosestHit};
+      case VK_SHADER_STAGE_ANY_HIT_BIT_KHR:
+        return {"client.rahit", isa::Stage::AnyHit};
+      case VK_SHADER_STAGE_INTERSECTION_BIT_KHR:
+        return {"client.rint", isa::Stage::Intersection};
+      case VK_SHADER_STAGE_CALLABLE_BIT_KHR:
+        return {"client.rcall", isa::Stage::Callable};
+      default:
+        return {"client.comp", isa::Stage::Compute};
+    }
+  }();
   const std::vector<uint32_t> words =
-      frontend::glsl_text_to_spirv(glsl, "client.comp", isa::Stage::Compute, {});
+      frontend::glsl_text_to_spirv(glsl, path.empty() ? name : path, own_stage, {});
   VkShaderModuleCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   info.codeSize = words.size() * sizeof(uint32_t), info.pCode = words.data();

@@ -70,7 +70,9 @@ class Client {
   VkResult download(const BoundImage& from, const MappedBuffer& to, VkExtent3D extent);
   // Makes a buffer over bytes of the host.
   VkBuffer import(void* bytes, VkDeviceSize size);
-  VkShaderModule module(const std::string& glsl);
+  // `path` names the text in messages, and its includes lie beside it.
+  VkShaderModule module(const std::string& glsl, VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                        const std::string& path = {});
   ComputePipeline pipeline(const std::string& glsl, const PipelineOptions& options);
   // Returns a set in which binding i has buffer i.
   VkDescriptorSet set(VkDescriptorSetLayout layout, const std::vector<VkDescriptorBufferInfo>& buffers,

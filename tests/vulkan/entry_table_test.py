@@ -37,11 +37,12 @@ BOTH = 'instance_extensions = []\ndevice_extensions = ["VK_KHR_thing", "VK_KHR_b
 
 
 class EntryTable(unittest.TestCase):
-    def generate(self, announced, source="VkResult CreateThing(Device& device, uint32_t* out) {\n"):
+    def generate(self, announced, source="VkResult CreateThing(Device& device, uint32_t* out) {\n", newer="<registry/>"):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         path = pathlib.Path(folder.name)
-        for name, text in (("vk.xml", REGISTRY), ("announced.toml", announced), ("thing.cpp", source)):
+        for name, text in (("vk.xml", REGISTRY), ("announced.toml", announced), ("thing.cpp", source),
+                           ("newer_extensions.xml", newer)):
             (path / name).write_text(text)
         result = subprocess.run([sys.executable, ROOT / "tools/vulkan_entry.py", path / "vk.xml", path / "announced.toml", path,
                                  path / "out"], capture_output=True, text=True)
@@ -61,6 +62,23 @@ class EntryTable(unittest.TestCase):
         self.assertIn('{"vkCreateThing", PFN_vkVoidFunction(&call_CreateThing), Level::OfDevice, ""}', texts["entry_table.cpp"])
         self.assertIn('{"vkCreateThingKHR", PFN_vkVoidFunction(&call_CreateThing), Level::OfDevice, "VK_KHR_base VK_KHR_thing"}',
                       texts["entry_table.cpp"])
+
+    def test_newer_extensions_count_where_the_registry_lacks_them(self):
+        newer = """<registry><types>
+          <type category="struct" name="VkNewFeatures" structextends="VkPhysicalDeviceFeatures2">
+            <member values="7"><type>VkStructureType</type> <name>sType</name></member></type>
+          <type category="struct" name="VkNewestFeatures" structextends="VkPhysicalDeviceFeatures2">
+            <member values="VkStructureType(9)"><type>VkStructureType</type> <name>sType</name></member>
+            <member><type>VkBool32</type> <name>freshest</name></member></type></types>
+          <extensions><extension name="VK_KHR_newest" type="device" supported="vulkan"><require>
+            <enum value="1" name="VK_KHR_NEWEST_SPEC_VERSION"/><type name="VkNewestFeatures"/></require></extension></extensions>
+          </registry>"""
+        announced = BOTH.replace('"VK_KHR_base"', '"VK_KHR_base", "VK_KHR_newest"').replace('"fresh"', '"fresh", "freshest"')
+        result, texts = self.generate(announced, newer=newer)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn('{"VK_KHR_newest", 1}', texts["announced.cpp"])
+        self.assertIn("{VkStructureType(9), kVkNewestFeatures}", texts["announced.cpp"])
+        self.assertIn("{VK_NEW, kVkNewFeatures}", texts["announced.cpp"])
 
     def test_a_written_command_is_guarded_and_another_says_that_it_is_not_there(self):
         _, texts = self.generate(BOTH)

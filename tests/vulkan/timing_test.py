@@ -40,6 +40,18 @@ class Timing(VulkanTest):
             self.assertAlmostEqual(early[number], cycles - 4000, delta=49)
             self.assertAlmostEqual(late[number], cycles + 1000, delta=49)
 
+    def test_traces_are_chosen_apart_from_dispatches(self):
+        def cycles(choice):
+            result = self.run_on_glint(CLIENT, "[traces]", GLINT_TIMING=choice)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            return {f"{kind} {number}": int(c) for kind, number, c in
+                    re.findall(r"(trace|dispatch) (\d+): shader \d+, (\d+) cycles", result.stdout)}
+        every = cycles("all")
+        self.assertEqual(sorted(every), ["dispatch 1", "trace 0", "trace 2"])
+        self.assertEqual(every["trace 0"], every["trace 2"], "the caches are cold at each launch")
+        self.assertEqual(cycles("trace 1-2"), {"trace 2": every["trace 2"]})
+        self.assertEqual(cycles("dispatch 0-9"), {"dispatch 1": every["dispatch 1"]})
+
     def test_threads_of_the_host_change_no_cycle(self):
         self.assertEqual(self.cycles(GLINT_TIMING="all", GLINT_THREADS="2"), self.cycles(GLINT_TIMING="all"))
 
