@@ -82,7 +82,13 @@ std::string Resources::lab_path(const std::string& name_or_path) const {
 
 std::string Resources::python_dir() const {
   std::error_code ignored;
-  return fs::is_regular_file(root_ + "/python/glint/__init__.py", ignored) ? root_ + "/python" : "";
+  std::vector<fs::path> places = {fs::path(root_) / "python"};
+  for (const auto& entry : fs::directory_iterator(fs::path(root_) / "../../lib", ignored))
+    if (entry.path().filename().string().starts_with("python3"))
+      places.push_back(entry.path() / "dist-packages");
+  for (const fs::path& place : places)
+    if (fs::is_regular_file(place / "glint/__init__.py", ignored)) return place.lexically_normal().string();
+  return "";
 }
 
 std::string read_file(const std::string& path) {

@@ -27,8 +27,8 @@ class Resources {
 
   // Returns the folder of a built-in shader set; `folder` is its name in shaders/.
   std::string shader_dir(const std::string& folder) const { return root_ + "/shaders/" + folder; }
-  // Returns the folder that the Python package lies in, or "" for an installed Glint, whose package Python
-  // finds by itself.
+  // Returns the folder that the Python package lies in, in a source tree or below the prefix of an
+  // installation, or "" where it is in neither.
   std::string python_dir() const;
   // Returns the path of a part of the HTML report, as web/ builds it.
   std::string web_file(const std::string& name) const { return root_ + "/web/dist/" + name; }

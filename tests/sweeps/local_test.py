@@ -282,8 +282,11 @@ class Commands(SweepTest):
 
     def test_mistakes_are_named(self):
         self.write("workloads = [", "broken.toml")
-        for words, text in ((("run",), "needs the sweep"), (("run", "no.toml"), "no such file"), (("run", "broken.toml"), "broken.toml"), (("status", "nosuch", "--store", "store"), "no sweep 'nosuch'")):
+        for words, text in ((("run",), "needs the sweep"), (("run", "no.toml"), "no such file"), (("run", "broken.toml"), "broken.toml"), (("status", "nosuch", "--store", "store"), "no store")):
             self.assertIn(text, self.glint(*words, code=2).stderr)
+        self.assertFalse((self.folder / "store").exists())
+        self.sweeps.Store(self.folder / "store").close()
+        self.assertIn("no sweep 'nosuch'", self.glint("status", "nosuch", "--store", "store", code=2).stderr)
 
     def test_the_command_and_the_package_have_the_same_options(self):
         from glint.sweeps.command import parser

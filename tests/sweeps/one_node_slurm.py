@@ -11,6 +11,7 @@ import subprocess
 import time
 
 NEEDED = ("slurmctld", "slurmd", "munged", "sbatch", "squeue", "scancel", "scontrol", "sinfo")
+ENDS_WITH_US = ("setpriv", "--pdeathsig", "KILL", "--")  # so that no daemon is left when the test is killed
 CONF = """
 ClusterName=glint-test
 SlurmctldHost={host}(127.0.0.1)
@@ -83,7 +84,7 @@ class OneNodeSlurm:
         key.chmod(0o400)
         place.chmod(0o755)
         # The socket lies where munge's user may make it; `self.folder` leads to it.
-        words = [shutil.which("munged"), "--foreground", f"--socket={place}/socket", f"--key-file={key}", f"--pid-file={place}/pid", f"--seed-file={place}/seed", f"--log-file={place}/log"]
+        words = [*ENDS_WITH_US, shutil.which("munged"), "--foreground", f"--socket={place}/socket", f"--key-file={key}", f"--pid-file={place}/pid", f"--seed-file={place}/seed", f"--log-file={place}/log"]
         child = subprocess.Popen(words, user=user.pw_uid, group=user.pw_gid, extra_groups=[], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.pids.append(child)
         (self.folder / "munge.socket").symlink_to(place / "socket")
@@ -91,7 +92,7 @@ class OneNodeSlurm:
 
     def _start(self, name, *words):
         with open(self.folder / f"{name}.out", "wb") as log:
-            self.pids.append(subprocess.Popen([shutil.which(name), *map(str, words)], stdout=log, stderr=log))
+            self.pids.append(subprocess.Popen([*ENDS_WITH_US, shutil.which(name), *map(str, words)], stdout=log, stderr=log))
 
     def _wait(self, holds, message):
         end = time.monotonic() + 60

@@ -91,7 +91,7 @@ def _run(given: argparse.Namespace) -> int:
 
 def _status(given: argparse.Namespace) -> int:
     if not given.sweep:
-        store = Store(given.store or DEFAULT_STORE)
+        store = Store(given.store or DEFAULT_STORE, new=False)
         names = SweepFolder.names(store)
         print("\n".join(text_of(status(name, store.folder)) for name in names) or f"{store.folder}: there is no sweep")
         return 0
@@ -116,7 +116,7 @@ def _cancel(given: argparse.Namespace) -> int:
 def _open(given: argparse.Namespace) -> int:
     if not given.point or not given.out:
         raise GlintError("`glint sweep open` needs --point, the id of a point, and --out, a new folder")
-    store = Store(given.store or (read(given.sweep).store if given.sweep and pathlib.Path(given.sweep).is_file() else None) or DEFAULT_STORE)
+    store = Store(given.store or (read(given.sweep).store if given.sweep and pathlib.Path(given.sweep).is_file() else None) or DEFAULT_STORE, new=False)
     found = [id for id in store.points() if id.startswith(given.point)]
     if len(found) != 1:
         raise GlintError(f"{store.folder}: {len(found)} points begin with '{given.point}'")
@@ -125,7 +125,7 @@ def _open(given: argparse.Namespace) -> int:
 
 
 def _gc(given: argparse.Namespace) -> int:
-    print(clean(Store(given.store or DEFAULT_STORE), given.yes))
+    print(clean(Store(given.store or DEFAULT_STORE, new=False), given.yes))
     return 0
 
 

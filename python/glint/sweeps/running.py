@@ -66,10 +66,6 @@ def read(sweep: str | pathlib.Path | Mapping[str, Any] | Definition) -> Definiti
     return Definition.of(sweep) if isinstance(sweep, Mapping) else Definition.read(sweep)
 
 
-def store_of(definition: Definition, store: str | pathlib.Path | None) -> Store:
-    return Store(store or definition.store or DEFAULT_STORE)
-
-
 def run(sweep: str | pathlib.Path | Mapping[str, Any] | Definition, store: str | pathlib.Path | None = None, *, engine: Engine | None = None, failed: bool = False,
         glint: str | pathlib.Path | None = None, progress: TextIO | None = None) -> Status:
     """Runs the points of a sweep that the store has not got. Running a sweep again resumes it.
@@ -88,7 +84,7 @@ def run(sweep: str | pathlib.Path | Mapping[str, Any] | Definition, store: str |
     definition, engine = read(sweep), engine or Engine()
     program = Program(find_glint(glint))
     points = plan(definition, program)
-    kept_in = store_of(definition, store)
+    kept_in = Store(store or definition.store or DEFAULT_STORE)
     try:
         folder = SweepFolder(kept_in, definition.name)
         folder.save(definition, points)
@@ -110,10 +106,10 @@ def status(sweep: str | pathlib.Path | Mapping[str, Any] | Definition, store: st
 def opened(sweep: str | pathlib.Path | Mapping[str, Any] | Definition, store: str | pathlib.Path | None) -> tuple[Store, SweepFolder]:
     """Returns the store and the folder of a sweep that has been planned."""
     if isinstance(sweep, (str, pathlib.PurePath)) and not pathlib.Path(sweep).is_file():
-        kept_in = Store(store or DEFAULT_STORE)
+        kept_in = Store(store or DEFAULT_STORE, new=False)
         return kept_in, SweepFolder.existing(kept_in, str(sweep))
     definition = read(sweep)
-    kept_in = store_of(definition, store)
+    kept_in = Store(store or definition.store or DEFAULT_STORE, new=False)
     return kept_in, SweepFolder.existing(kept_in, definition.name)
 
 

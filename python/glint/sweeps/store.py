@@ -28,15 +28,17 @@ _STALE = 86400  # seconds after which a scratch folder of another host is taken 
 
 
 class Store:
-    """Holds a folder of points. Raises SweepError when the folder is something else.
+    """Holds a folder of points, which is made when it is `new`. Raises SweepError when the folder is something else.
 
     A point is in the store when its folder is: the folder appears whole, by one rename. Whoever runs a point holds its lock, a range of one byte of the
     file `locks`, which the system gives back when its process ends, however it ends. Without locks a point may run twice, and the first result stays.
     """
 
-    def __init__(self, folder: str | pathlib.Path):
+    def __init__(self, folder: str | pathlib.Path, new: bool = True):
         self.folder = pathlib.Path(folder).resolve()
         mark = self.folder / _MARK
+        if not mark.is_file() and not new:
+            raise SweepError(f"{self.folder}: there is no store of sweeps here: name the right folder with --store")
         if not mark.is_file():
             self._begin(mark)
         if read_json(mark).get("schema") != SCHEMA:
