@@ -226,6 +226,29 @@ TEST_CASE("a stack of the size that the groups ask for is enough", "[portable][r
   CHECK(scene.take() == kExpected);
 }
 
+// Applications declare one level, nest two, and run on drivers of hardware.
+TEST_CASE("traces that are nested deeper than a pipeline says run, which is said once", "[rays]") {
+  RayPipelineClient client;
+  const Scene scene(client);
+  RayPipelineOrder order{kSixStages, kGroups, {}};
+  order.depth = 1;
+  order.shaders[2].glsl =
+      kHead +
+      "layout(location = 0) rayPayloadInEXT uint value;\nvoid main() {\n"
+      "  uint mine = gl_InstanceCustomIndexEXT;\n  if (mine == 12) return;\n"
+      "  traceRayEXT(scene, 0, 0xff, 0, 0, 0, vec3(5.4, 0.3, 5), 0, vec3(0, 0, -1), 100, 0);\n"
+      "  value = mine;\n}\n";
+  const VkPipeline pipeline = client.ray_pipeline(order);
+  const RayTable table = client.table(pipeline, 0, {1}, {2, 3}, {4});
+
+  REQUIRE(client.trace(pipeline, scene.set, table, {8, 1, 1}) == VK_SUCCESS);
+  REQUIRE(client.trace(pipeline, scene.set, table, {8, 1, 1}) == VK_SUCCESS);
+
+  CHECK(scene.take()[0] == 110);
+  REQUIRE(client.messages.size() == 1);
+  CHECK_THAT(client.messages[0], Catch::Contains("maxPipelineRayRecursionDepth is 1"));
+}
+
 TEST_CASE("handles of another pipeline are faults that are said, and not traced", "[rays]") {
   RayPipelineClient client;
   const Scene scene(client);
