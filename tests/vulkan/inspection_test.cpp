@@ -40,7 +40,8 @@ TEST_CASE("a pipeline says what its shader needs and shows its code") {
   VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr, made.pipeline, 0};
 
   uint32_t count = 9;
-  VkPipelineExecutablePropertiesKHR shader{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
+  VkPipelineExecutablePropertiesKHR shader{};
+  shader.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR;
   REQUIRE(properties(client.device, &pipeline, &count, &shader) == VK_SUCCESS);
   CHECK(count == 1);
   CHECK(shader.stages == VK_SHADER_STAGE_COMPUTE_BIT);
@@ -55,8 +56,8 @@ TEST_CASE("a pipeline says what its shader needs and shows its code") {
   CHECK(values.at("Stack instructions") == 0);
   CHECK(values.at("Resident warps") == 2 * values.at("Resident workgroups"));
 
-  VkPipelineExecutableInternalRepresentationKHR text{
-      VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR};
+  VkPipelineExecutableInternalRepresentationKHR text{};
+  text.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR;
   count = 1;
   REQUIRE(texts(client.device, &info, &count, &text) == VK_SUCCESS);
   std::string code(text.dataSize, '?');
@@ -95,10 +96,10 @@ TEST_CASE("calibrated timestamps read the device's clock and the host's") {
 TEST_CASE("the budget of the heap says what is allocated") {
   Client client(with({VK_EXT_MEMORY_BUDGET_EXTENSION_NAME}));
   const auto used = [&] {
-    VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
-    VkPhysicalDeviceMemoryProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2,
-                                                 &budget};
+    VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
+    budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
+    VkPhysicalDeviceMemoryProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2, properties.pNext = &budget;
     vkGetPhysicalDeviceMemoryProperties2(client.physical, &properties);
     CHECK(budget.heapBudget[0] == properties.memoryProperties.memoryHeaps[0].size);
     return budget.heapUsage[0];
