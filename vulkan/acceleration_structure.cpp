@@ -7,6 +7,7 @@
 #include <exception>
 #include <fmt/format.h>
 #include <memory>
+#include <vector>
 
 #include "rtunit/structure/in_memory.h"
 #include "vulkan/device.h"
@@ -31,6 +32,16 @@ Structure* find_structure(const Device& device, Address address) {
 Address address_of_handle(const Device& device, uint64_t handle) {
   const auto found = device.structures.find(reinterpret_cast<Structure*>(handle));
   return found == device.structures.end() ? 0 : (*found)->address;
+}
+
+void place_structures(Device& device, const Buffer& buffer) {
+  for (Structure* const each : device.unplaced_structures)
+    if (each->buffer == &buffer) each->address = buffer.address + each->offset;
+  forget_structures(device, buffer);
+}
+
+void forget_structures(Device& device, const Buffer& buffer) {
+  std::erase_if(device.unplaced_structures, [&](const Structure* each) { return each->buffer == &buffer; });
 }
 
 uint32_t stack_need(const Device& device) {
@@ -63,12 +74,13 @@ VkResult CreateAccelerationStructureKHR(Device& device, const VkAccelerationStru
   if (info->offset % kStructureAlignment)
     throw Refusal(fmt::format("the offset {} of a structure is not a multiple of {}", info->offset,
                               kStructureAlignment));
-  bytes_of(device, info->buffer, info->offset, info->size);
+  check_part(*info->buffer, info->offset, info->size);
   auto made = std::make_unique<Structure>();
   made->name = fmt::format("acceleration structure {}", ++device.structures_made);
-  made->address = info->buffer->address + info->offset;
-  made->bytes = info->size;
+  made->buffer = info->buffer, made->offset = info->offset, made->bytes = info->size;
   device.structures.insert(made.get());
+  device.unplaced_structures.push_back(made.get());
+  if (info->buffer->address) place_structures(device, *info->buffer);
   *out = made.release();
   return VK_SUCCESS;
 }
@@ -76,6 +88,7 @@ VkResult CreateAccelerationStructureKHR(Device& device, const VkAccelerationStru
 void DestroyAccelerationStructureKHR(Device& device, VkAccelerationStructureKHR structure) {
   if (!structure) return;
   device.structures.erase(structure);
+  std::erase(device.unplaced_structures, structure);
   delete structure;
 }
 

@@ -9,10 +9,13 @@
 #include "base/types.h"
 #include "rtunit/structure/build.h"
 #include "vulkan/handles.h"
+#include "vulkan/memory.h"
 
 struct VkAccelerationStructureKHR_T {
   std::string name;
   glint::Address address = 0;     // in the buffer; also the device address that applications get
+  VkBuffer buffer = nullptr;      // while it has no memory yet, and the structure no address
+  VkDeviceSize offset = 0;        // in the buffer
   VkDeviceSize bytes = 0;         // that the application has given to it
   VkDeviceSize update_bytes = 0;  // that an update may need; 0: it was built without updates
 };
@@ -26,6 +29,10 @@ Structure* find_structure(const Device& device, Address address);
 // Returns where the structure of a handle that the application wrote into memory lies, or 0 when the device
 // has no such structure.
 Address address_of_handle(const Device& device, uint64_t handle);
+// Gives the structures of a buffer their addresses. The buffer has memory now.
+void place_structures(Device& device, const Buffer& buffer);
+// Lets the structures of a buffer that ends without memory have no address.
+void forget_structures(Device& device, const Buffer& buffer);
 // Returns the stack entries that the worst ray needs in any structure of the device.
 uint32_t stack_need(const Device& device);
 

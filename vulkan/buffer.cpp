@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <memory>
 
+#include "vulkan/acceleration_structure.h"
 #include "vulkan/chain.h"
 #include "vulkan/device.h"
 #include "vulkan/memory.h"
@@ -35,11 +36,15 @@ void BufferParts::trim(mem::AddressSpace& memory) {
   windows_.clear();
 }
 
+void check_part(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize range) {
+  if (offset > buffer.bytes || (range != VK_WHOLE_SIZE && range > buffer.bytes - offset))
+    throw Refusal(fmt::format("{} bytes from byte {} on leave {}, which has {} bytes", range, offset,
+                              buffer.name, buffer.bytes));
+}
+
 HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range) {
   if (!buffer->address) throw Refusal(fmt::format("{} is not bound to memory", buffer->name));
-  if (offset > buffer->bytes || (range != VK_WHOLE_SIZE && range > buffer->bytes - offset))
-    throw Refusal(fmt::format("{} bytes from byte {} on leave {}, which has {} bytes", range, offset,
-                              buffer->name, buffer->bytes));
+  check_part(*buffer, offset, range);
   return {device.memory.data(buffer->memory->backing) + buffer->offset + offset,
           range == VK_WHOLE_SIZE ? buffer->bytes - offset : range};
 }
@@ -67,6 +72,7 @@ VkResult CreateBuffer(Device& device, const VkBufferCreateInfo* info, VkBuffer* 
 void DestroyBuffer(Device& device, VkBuffer buffer) {
   if (!buffer) return;
   device.parts.forget(device.memory, *buffer);
+  forget_structures(device, *buffer);
   if (buffer->address) device.memory.free(buffer->address);
   delete buffer;
 }
@@ -74,6 +80,7 @@ void DestroyBuffer(Device& device, VkBuffer buffer) {
 VkResult BindBufferMemory(Device& device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset) {
   buffer->address = bind_window(device, buffer->name, buffer->bytes, memory, offset);
   buffer->memory = memory, buffer->offset = offset;
+  place_structures(device, *buffer);
   return VK_SUCCESS;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "frontend/cache.h"
 #include "memsys/address_space.h"
@@ -43,6 +44,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   glint::frontend::ShaderCache shader_cache{{}};  // in memory only
   VkDeviceSize allocated_bytes = 0;               // of the heap
   std::set<VkAccelerationStructureKHR> structures;
+  std::vector<VkAccelerationStructureKHR> unplaced_structures;  // Their buffers have no memory yet.
   // They give objects names.
   uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, ray_pipelines_made = 0;
   glint::vulkan::DeviceClock clock;

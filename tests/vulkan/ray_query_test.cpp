@@ -217,6 +217,45 @@ TEST_CASE("hidden instances and wild references are inactive", "[rays]") {
   CHECK_THAT(client.prints, Catch::Contains("instance 1: no bottom level"));
 }
 
+TEST_CASE("a structure may be made before its buffer has memory", "[portable][rays]") {
+  RayClient client;
+  const auto buffer_of = [&](VkDeviceSize bytes) {
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    info.size = bytes, info.usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
+                                    VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    VkBuffer out = nullptr;
+    REQUIRE(vkCreateBuffer(client.device, &info, nullptr, &out) == VK_SUCCESS);
+    return out;
+  };
+  const auto structure_in = [&](VkBuffer buffer) {
+    VkAccelerationStructureCreateInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR};
+    info.buffer = buffer, info.offset = 256, info.size = 1024;
+    info.type = VK_ACCELERATION_STRUCTURE_TYPE_GENERIC_KHR;
+    VkAccelerationStructureKHR out = nullptr;
+    REQUIRE(client.create(client.device, &info, nullptr, &out) == VK_SUCCESS);
+    return out;
+  };
+  const VkBuffer never = buffer_of(2048), late = buffer_of(2048);
+  const VkAccelerationStructureKHR lost = structure_in(never), made = structure_in(late);
+  vkDestroyBuffer(client.device, never, nullptr);
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(client.device, late, &needs);
+  VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  VkMemoryAllocateInfo wanted{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags, needs.size, 0};
+  VkDeviceMemory memory = nullptr;
+  REQUIRE(vkAllocateMemory(client.device, &wanted, nullptr, &memory) == VK_SUCCESS);
+  REQUIRE(vkBindBufferMemory(client.device, late, memory, 0) == VK_SUCCESS);
+  VkAccelerationStructureDeviceAddressInfoKHR place{
+      VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR, nullptr, made};
+  VkBufferDeviceAddressInfo of_buffer{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr, late};
+  CHECK(client.address_of(client.device, &place) ==
+        vkGetBufferDeviceAddress(client.device, &of_buffer) + 256);
+  for (VkAccelerationStructureKHR each : {lost, made}) client.destroy(client.device, each, nullptr);
+  vkDestroyBuffer(client.device, late, nullptr);
+  vkFreeMemory(client.device, memory, nullptr);
+}
+
 TEST_CASE("a structure without room for what is built is refused when it is recorded", "[rays]") {
   RayClient client;
   const BuildOrder order = client.triangles(unit_square());
