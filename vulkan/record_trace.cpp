@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint64_t kStackAlignment = 16;
 
-void check_pipeline(const CommandBuffer& commands) {
+void check_ray_pipeline(const CommandBuffer& commands) {
   if (!commands.bound_for_rays.pipeline || !commands.bound_for_rays.pipeline->rays)
     throw Refusal("no ray-tracing pipeline is bound");
 }
@@ -58,7 +58,7 @@ void CmdTraceRaysKHR(CommandBuffer& commands, const VkStridedDeviceAddressRegion
                      const VkStridedDeviceAddressRegionKHR* miss, const VkStridedDeviceAddressRegionKHR* hit,
                      const VkStridedDeviceAddressRegionKHR* callable, uint32_t width, uint32_t height,
                      uint32_t depth) {
-  check_pipeline(commands);
+  check_ray_pipeline(commands);
   const std::array size{width, height, depth};
   check_size(size);
   commands.record([bound = commands.bound_for_rays, table = table_of(raygen, miss, hit, callable),
@@ -69,7 +69,7 @@ void CmdTraceRaysIndirectKHR(CommandBuffer& commands, const VkStridedDeviceAddre
                              const VkStridedDeviceAddressRegionKHR* miss,
                              const VkStridedDeviceAddressRegionKHR* hit,
                              const VkStridedDeviceAddressRegionKHR* callable, VkDeviceAddress at) {
-  check_pipeline(commands);
+  check_ray_pipeline(commands);
   commands.record(
       [bound = commands.bound_for_rays, table = table_of(raygen, miss, hit, callable), at](Queue& queue) {
         const auto command = command_at<VkTraceRaysIndirectCommandKHR>(queue, at);
@@ -80,7 +80,7 @@ void CmdTraceRaysIndirectKHR(CommandBuffer& commands, const VkStridedDeviceAddre
 }
 
 void CmdTraceRaysIndirect2KHR(CommandBuffer& commands, VkDeviceAddress at) {
-  check_pipeline(commands);
+  check_ray_pipeline(commands);
   commands.record([bound = commands.bound_for_rays, at](Queue& queue) {
     const auto from = command_at<VkTraceRaysIndirectCommand2KHR>(queue, at);
     const std::array size{from.width, from.height, from.depth};

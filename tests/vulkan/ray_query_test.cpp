@@ -220,7 +220,8 @@ TEST_CASE("hidden instances and wild references are inactive", "[rays]") {
 TEST_CASE("a structure may be made before its buffer has memory", "[portable][rays]") {
   RayClient client;
   const auto buffer_of = [&](VkDeviceSize bytes) {
-    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    VkBufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     info.size = bytes, info.usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
                                     VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
     VkBuffer out = nullptr;
@@ -228,7 +229,8 @@ TEST_CASE("a structure may be made before its buffer has memory", "[portable][ra
     return out;
   };
   const auto structure_in = [&](VkBuffer buffer) {
-    VkAccelerationStructureCreateInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR};
+    VkAccelerationStructureCreateInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
     info.buffer = buffer, info.offset = 256, info.size = 1024;
     info.type = VK_ACCELERATION_STRUCTURE_TYPE_GENERIC_KHR;
     VkAccelerationStructureKHR out = nullptr;
@@ -240,7 +242,8 @@ TEST_CASE("a structure may be made before its buffer has memory", "[portable][ra
   vkDestroyBuffer(client.device, never, nullptr);
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(client.device, late, &needs);
-  VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+  VkMemoryAllocateFlagsInfo flags{};
+  flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
   VkMemoryAllocateInfo wanted{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags, needs.size, 0};
   VkDeviceMemory memory = nullptr;
