@@ -1,3 +1,3 @@
 if(TARGET glint::pipeline AND TARGET glint::frontend)
-  glint_test(references LINKS glint::pipeline SOURCES shaders/compute_lab.cpp shaders/ray_lab.cpp shaders/references_test.cpp)
+  glint_test(references LINKS test_labs glint::pipeline SOURCES shaders/references_test.cpp)
 endif()
