@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "frontend/spirv/known_positions.h"
 #include "isa/program.h"
 #include "isa/stage.h"
 #include "pipeline/software_traversal.h"
@@ -20,8 +21,8 @@ namespace {
 std::shared_ptr<const std::vector<uint32_t>> words_of(const VkShaderModuleCreateInfo& info) {
   if (info.codeSize % sizeof(uint32_t) || info.codeSize < 5 * sizeof(uint32_t))
     throw Refusal(fmt::format("{} bytes are not a SPIR-V module", info.codeSize));
-  return std::make_shared<const std::vector<uint32_t>>(info.pCode,
-                                                       info.pCode + info.codeSize / sizeof(uint32_t));
+  std::vector<uint32_t> words(info.pCode, info.pCode + info.codeSize / sizeof(uint32_t));
+  return std::make_shared<const std::vector<uint32_t>>(frontend::with_known_positions(std::move(words)));
 }
 
 isa::Stage isa_stage(VkShaderStageFlagBits stage) {
