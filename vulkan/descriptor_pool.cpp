@@ -57,9 +57,9 @@ DescriptorSet* allocate(Device& device, VkDescriptorPool pool, const DescriptorS
   DescriptorSetLayout own = layout;
   for (auto& [number, binding] : own.bindings)
     if (binding.is_variable) {  // It is the last binding, so no other one moves.
-      own.descriptors -= binding.count;
-      binding.count = variable_count ? *variable_count : 0;
-      own.descriptors += binding.count;
+      const uint32_t count = variable_count ? *variable_count : 0;
+      if (!binding.is_inline()) own.descriptors -= binding.count, own.descriptors += count;
+      binding.count = count;
     }
   auto made = std::make_unique<DescriptorSet>(set_of(own));
   made->pool = pool;

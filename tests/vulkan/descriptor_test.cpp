@@ -31,13 +31,14 @@ VkBufferView view_of(Client& client, const MappedBuffer& buffer, VkFormat format
 
 // Allocates a set whose pool has `size` of each of the types.
 VkDescriptorSet allocate(Client& client, VkDescriptorSetLayout layout,
-                         const std::vector<VkDescriptorPoolSize>& sizes, const void* more = nullptr) {
+                         const std::vector<VkDescriptorPoolSize>& sizes, const void* more = nullptr,
+                         const void* more_of_set = nullptr) {
   VkDescriptorPoolCreateInfo info{
       VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, more, 0, 1, uint32_t(sizes.size()), sizes.data()};
   VkDescriptorPool pool = nullptr;
   check(vkCreateDescriptorPool(client.device, &info, nullptr, &pool), "vkCreateDescriptorPool");
   client.at_end([device = client.device, pool] { vkDestroyDescriptorPool(device, pool, nullptr); });
-  VkDescriptorSetAllocateInfo wanted{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1,
+  VkDescriptorSetAllocateInfo wanted{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, more_of_set, pool, 1,
                                      &layout};
   VkDescriptorSet out = nullptr;
   check(vkAllocateDescriptorSets(client.device, &wanted, &out), "vkAllocateDescriptorSets");
@@ -147,6 +148,32 @@ TEST_CASE("an inline uniform block holds the bytes that were written into its se
   REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
 
   for (uint32_t i = 0; i < kThreads; ++i) REQUIRE(out.as<uint32_t>()[i] == i * 3 + 9);
+}
+
+TEST_CASE("a set may have an inline uniform block of its own length", "[portable]") {
+  VkPhysicalDeviceInlineUniformBlockFeatures blocks{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_INLINE_UNIFORM_BLOCK_FEATURES, nullptr, VK_TRUE, VK_FALSE};
+  VkPhysicalDeviceDescriptorIndexingFeatures lengths{};
+  lengths.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES, lengths.pNext = &blocks;
+  lengths.descriptorBindingVariableDescriptorCount = VK_TRUE;
+  Client::Options options;
+  options.more_features = &lengths;
+  Client client(options);
+  const VkDescriptorBindingFlags flag = VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT;
+  const VkDescriptorSetLayoutBindingFlagsCreateInfo flags{
+      VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO, nullptr, 1, &flag};
+  const VkDescriptorSetLayoutBinding binding{0, kInline, 64, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  const VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, &flags, 0,
+                                             1, &binding};
+  VkDescriptorSetLayout layout = nullptr;
+  REQUIRE(vkCreateDescriptorSetLayout(client.device, &info, nullptr, &layout) == VK_SUCCESS);
+  const uint32_t bytes = 32;
+  const VkDescriptorSetVariableDescriptorCountAllocateInfo own{
+      VK_STRUCTURE_TYPE_DESCRIPTOR_SET_VARIABLE_DESCRIPTOR_COUNT_ALLOCATE_INFO, nullptr, 1, &bytes};
+  const VkDescriptorPoolInlineUniformBlockCreateInfo one{
+      VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_INLINE_UNIFORM_BLOCK_CREATE_INFO, nullptr, 1};
+  CHECK(allocate(client, layout, {{kInline, 64}}, &one, &own) != nullptr);
+  vkDestroyDescriptorSetLayout(client.device, layout, nullptr);
 }
 
 TEST_CASE("memory that the application brings is read and written in place", "[portable]") {
