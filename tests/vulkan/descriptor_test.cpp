@@ -150,7 +150,7 @@ TEST_CASE("an inline uniform block holds the bytes that were written into its se
   for (uint32_t i = 0; i < kThreads; ++i) REQUIRE(out.as<uint32_t>()[i] == i * 3 + 9);
 }
 
-TEST_CASE("a set may have an inline uniform block of its own length", "[portable]") {
+TEST_CASE("a set may have an inline uniform block of its own length") {
   VkPhysicalDeviceInlineUniformBlockFeatures blocks{
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_INLINE_UNIFORM_BLOCK_FEATURES, nullptr, VK_TRUE, VK_FALSE};
   VkPhysicalDeviceDescriptorIndexingFeatures lengths{};

@@ -38,7 +38,7 @@ class VulkanInfo(VulkanTest):
         self.assertEqual(sorted(names), ["vk_icdGetInstanceProcAddr", "vk_icdGetPhysicalDeviceProcAddr",
                                          "vk_icdNegotiateLoaderICDInterfaceVersion"])
 
-    def test_the_library_can_be_closed_and_opened_again(self):
+    def test_the_library_stays_where_it_is_when_it_is_closed_and_can_be_opened_again(self):
         library = json.loads(MANIFEST.read_text())["ICD"]["library_path"]
         script = f"""
 import _ctypes, ctypes
@@ -47,7 +47,7 @@ for _ in range(5):
     version = ctypes.c_uint32(99)
     assert library.vk_icdNegotiateLoaderICDInterfaceVersion(ctypes.byref(version)) == 0 and version.value == 5
     _ctypes.dlclose(library._handle)
-    assert "libglint_vulkan" not in open("/proc/self/maps").read()
+    assert "libglint_vulkan" in open("/proc/self/maps").read()
 """
         result = self.run_on_glint(sys.executable, "-c", script)
         self.assertEqual(result.returncode, 0, result.stderr)
