@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 #include <utility>
+
+#include "base/regular_file.h"
 
 namespace glint::compute {
 namespace {
@@ -53,6 +56,21 @@ void Host::launch(const std::string& name, const std::array<uint32_t, 3>& groups
   builder.world.prints = setup_.prints;
   run(name, groups, builder.finish());
   for (const Address at : builder.allocations()) memory_.free(at);
+}
+
+void Host::launch_ptx(const std::string& name, const pipeline::KernelGrid& grid,
+                      const std::vector<std::vector<std::byte>>& arguments) {
+  const std::string file = setup_.kernels + "/" + name + ".ptx";
+  const std::optional<std::string> text = read_regular_file(file);
+  if (!text) throw UserError({file}, "the kernel cannot be read");
+  const frontend::PtxOptions options{.backend = pipeline::backend_options(setup_.gpu.compiler)};
+  pipeline::KernelWorld kernel(frontend::compile_ptx(*text, file, "", options));
+  kernel.world.memory = &memory_;
+  kernel.world.layout = setup_.gpu.core.layout.make({});
+  kernel.world.on_fault = setup_.on_fault;
+  kernel.set_grid(grid);
+  kernel.set_arguments(arguments);
+  run(name, grid.grid, kernel.world);
 }
 
 void Host::run(const std::string& kernel, const std::array<uint32_t, 3>& groups, const exec::World& world) {

@@ -15,6 +15,7 @@
 
 #include "compute/program.h"
 #include "pipeline/device.h"
+#include "pipeline/kernel_launch.h"
 #include "pipeline/launch_builder.h"
 
 namespace glint::compute {
@@ -108,6 +109,11 @@ class Host {
   }
   void launch(const std::string& kernel, const std::array<uint32_t, 3>& groups,
               const std::vector<pipeline::BufferRange>& buffers, std::span<const std::byte> constants);
+
+  // Runs the kernel of NAME.ptx, with the bytes of each argument (KernelWorld::argument()). The kernel's
+  // module has no variables.
+  void launch_ptx(const std::string& kernel, const pipeline::KernelGrid& grid,
+                  const std::vector<std::vector<std::byte>>& arguments);
 
   // Throws WrongResult at the first value that is not the expected one. Integers are to be equal. A float may
   // differ by `tolerance` times the larger of 1 and its magnitude; without tolerance it is to be equal,

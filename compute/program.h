@@ -19,6 +19,7 @@ struct Program {
   double full_megabytes;                     // of the host, beyond those of a small program
   // Makes the input, launches the kernels and checks every value that they leave behind.
   void (*run)(Host& host, Size size);
+  bool is_variant = false;  // It is another program's computation in another language, and not of the suite.
 };
 
 // Returns all programs, by name.

@@ -19,13 +19,14 @@ class Missing(Exception):
 class Table:
     """Holds a metrics.csv: figures by workload and metric."""
 
-    def __init__(self, rows):
+    def __init__(self, rows, stands_for_all=False):
+        self.stands_for_all = stands_for_all
         self.rows = {row["workload"]: row for row in rows}
 
     @staticmethod
-    def read(path):
+    def read(path, stands_for_all=False):
         with open(path, newline="") as file:
-            return Table(list(csv.DictReader(file)))
+            return Table(list(csv.DictReader(file)), stands_for_all)
 
     def get(self, workload, metric):
         if workload not in self.rows:
@@ -50,8 +51,8 @@ class Table:
 
 
 def whole(table, count=46):
-    """Checks that the table has all workloads, which statements about all workloads need."""
-    if len(table.rows) < count:
+    """Checks that the table has all workloads, which statements about all workloads need. A table of a subset stands for all when it says so."""
+    if len(table.rows) < count and not table.stands_for_all:
         raise Missing(f"{len(table.rows)} of {count} workloads")
 
 
@@ -359,6 +360,25 @@ def evaluate(table, **others):
     return out
 
 
+def flips(folder):
+    """Returns the verdicts of the first machine of an ablation by statement, and for each other machine the statements whose verdict is another one."""
+    tables = {path.parent.name: Table.read(path, stands_for_all=True) for path in sorted(pathlib.Path(folder).glob("*/metrics.csv"))}
+    if "from" not in tables:
+        raise SystemExit(f"error: {folder} has no from/metrics.csv; `glint ablate` writes it")
+    verdicts = {name: {text: (verdict, figures) for _, text, verdict, figures in evaluate(table)} for name, table in tables.items()}
+    first = verdicts.pop("from")
+    return first, {name: {text: of[text] for text in first if of[text][0] != first[text][0]} for name, of in verdicts.items()}
+
+
+def print_flips(folder):
+    first, others = flips(folder)
+    for text, (verdict, figures) in first.items():
+        print(f"{verdict:16}  {text}: {figures}")
+        for name, changed in others.items():
+            if text in changed:
+                print(f"    {name}: {changed[text][0]}, {changed[text][1]}")
+
+
 def read_series(path):
     with open(path, newline="") as file:
         rows = [{key: float(value) if value else 0.0 for key, value in row.items()} for row in csv.DictReader(file)]
@@ -369,13 +389,19 @@ def read_series(path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("metrics", help="the metrics.csv of `glint bench` on mobile")
+    parser.add_argument("metrics", nargs="?", help="the metrics.csv of `glint bench` on mobile")
+    parser.add_argument("--ablation", metavar="FOLDER", help="folder of `glint ablate`: print which statements each machine flips; its workloads stand for all")
     parser.add_argument("--desktop", help="the metrics.csv of the same workloads on desktop")
     parser.add_argument("--large", help="the metrics.csv of SHIP_SH at 1920x1080")
     parser.add_argument("--bandwidth", help="the metrics.csv of PARTY_PT with twice the DRAM bandwidth")
     parser.add_argument("--series", nargs="+", default=[], metavar="RUN", help="run directories of PARK_PT, BUNNY_AO and SHIP_SH with --sample")
     parser.add_argument("--markdown", action="store_true", help="print a table for docs")
     arguments = parser.parse_args()
+    if arguments.ablation:
+        print_flips(arguments.ablation)
+        return
+    if not arguments.metrics:
+        parser.error("the following arguments are required: metrics")
     table = Table.read(arguments.metrics)
     others = {name: Table.read(path) for name in ("desktop", "large", "bandwidth") if (path := getattr(arguments, name))}
     series = {pathlib.Path(run).name: read_series(pathlib.Path(run) / "series.csv") for run in arguments.series}

@@ -104,6 +104,7 @@ int main_of(int argc, char** argv) {
   add_vulkan(app, session);
   add_bench(app, session);
   add_lab(app, session);
+  add_ablate(app, session);
   add_sweep(app, session);
   add_stats(app, session);
   add_report(app, session);

@@ -40,6 +40,8 @@ def reduced(words):
         rest = [workplace.SLOW_SCENES.get(name, name) for name in names] + options
     elif command == "microbench":
         return words if "--only" in rest else [*words, *workplace.KERNEL_ONLY]
+    elif command == "ablate":
+        return words if "--plan" in rest else [*words, "--plan"]
     else:
         return words
     return [command, *without(without(rest, "--size"), "--spp"), "--size", workplace.SIZE, "--spp", workplace.SAMPLES]

@@ -37,7 +37,9 @@ std::string nearest_in_any_case(const std::string& name, const std::vector<std::
 }
 
 bool is_called(const NamedWorkload& workload, const std::string& name) {
-  if (workload.is_program()) return name == "COMPUTE" || name == upper(workload.scene);
+  if (workload.is_program())
+    return name == upper(workload.scene) ||
+           (name == "COMPUTE" && !compute::find_program(workload.scene)->is_variant);
   return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene ||
          name == upper(workload.shader) || name == workload.name();
 }

@@ -24,10 +24,10 @@ namespace {
 
 constexpr const char* kCycles = "sum(gpu.cycles)";
 
-using Runs = std::map<std::string, report::RunRecord>;  // by workload
+using RunsByWorkload = std::map<std::string, report::RunRecord>;  // by workload
 
-Runs runs_of(const std::string& folder) {
-  Runs out;
+RunsByWorkload runs_of(const std::string& folder) {
+  RunsByWorkload out;
   for (const auto& [workload, directory] : finished_runs(folder))
     out.emplace(workload, report::RunRecord::read(directory));
   return out;
@@ -63,7 +63,7 @@ LabRow row_of(const LabArm& arm, const std::string& workload, const report::RunR
   return row;
 }
 
-LabResult result_of(const LabArm& arm, const Runs& runs, const Runs* baselines) {
+LabResult result_of(const LabArm& arm, const RunsByWorkload& runs, const RunsByWorkload* baselines) {
   LabResult out{&arm, {}, {}, {}};
   std::vector<std::optional<double>> speedups;
   for (const auto& [workload, run] : runs) {
@@ -139,7 +139,7 @@ std::optional<bool> LabResult::has_published_sign() const {
 }
 
 std::vector<LabResult> lab_results(const Experiment& experiment, const std::string& folder) {
-  std::map<std::string, Runs> runs;
+  std::map<std::string, RunsByWorkload> runs;
   for (const LabArm& arm : experiment.arms) runs[arm.name] = runs_of(folder + "/" + arm.name);
   std::vector<LabResult> out;
   for (const LabArm& arm : experiment.arms)
