@@ -18,8 +18,6 @@
 namespace glint::vulkan {
 namespace {
 
-constexpr uint32_t kLanes = 32;
-
 // Copies a text with its end, as far as there is room.
 template <size_t N>
 void put_text(char (&to)[N], std::string_view text) {
@@ -40,26 +38,6 @@ const isa::Program& program_of(Device& device, const VkPipelineExecutableInfoKHR
   return all[info.executableIndex];
 }
 
-VkShaderStageFlags flag_of(isa::Stage stage) {
-  switch (stage) {
-    case isa::Stage::Compute:
-      return VK_SHADER_STAGE_COMPUTE_BIT;
-    case isa::Stage::RayGeneration:
-      return VK_SHADER_STAGE_RAYGEN_BIT_KHR;
-    case isa::Stage::Miss:
-      return VK_SHADER_STAGE_MISS_BIT_KHR;
-    case isa::Stage::ClosestHit:
-      return VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
-    case isa::Stage::AnyHit:
-      return VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
-    case isa::Stage::Intersection:
-      return VK_SHADER_STAGE_INTERSECTION_BIT_KHR;
-    case isa::Stage::Callable:
-      return VK_SHADER_STAGE_CALLABLE_BIT_KHR;
-  }
-  return 0;
-}
-
 struct Statistic {
   const char *name, *description;
   uint64_t value;
@@ -74,7 +52,7 @@ std::vector<Statistic> statistics_of(const Device& device, const isa::Program& p
   core::LaunchNeeds needs{.registers = program.num_registers, .shared_bytes = program.shared_bytes};
   if (program.stage == isa::Stage::Compute) {
     const auto& [x, y, z] = program.local_size;
-    needs.warps = (x * y * z + kLanes - 1) / kLanes, needs.has_blocks = true;
+    needs.warps = (x * y * z + uint32_t(kLanes) - 1) / uint32_t(kLanes), needs.has_blocks = true;
   }
   const core::Residency fits = core::residency(device.physical.gpu.core, needs);
   return {

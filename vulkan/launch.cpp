@@ -37,10 +37,6 @@ class Allocations {
   const pipeline::LaunchBuilder& builder_;
 };
 
-}  // namespace
-
-namespace {
-
 // Sets up what all launches of a pipeline have, lets `set_size(builder)` do the rest, and runs the launch. It
 // runs nothing when set_size() returns false.
 template <class SetSize>

@@ -25,25 +25,6 @@ std::shared_ptr<const std::vector<uint32_t>> words_of(const VkShaderModuleCreate
   return std::make_shared<const std::vector<uint32_t>>(frontend::with_known_positions(std::move(words)));
 }
 
-isa::Stage isa_stage(VkShaderStageFlagBits stage) {
-  switch (stage) {
-    case VK_SHADER_STAGE_RAYGEN_BIT_KHR:
-      return isa::Stage::RayGeneration;
-    case VK_SHADER_STAGE_MISS_BIT_KHR:
-      return isa::Stage::Miss;
-    case VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR:
-      return isa::Stage::ClosestHit;
-    case VK_SHADER_STAGE_ANY_HIT_BIT_KHR:
-      return isa::Stage::AnyHit;
-    case VK_SHADER_STAGE_INTERSECTION_BIT_KHR:
-      return isa::Stage::Intersection;
-    case VK_SHADER_STAGE_CALLABLE_BIT_KHR:
-      return isa::Stage::Callable;
-    default:
-      return isa::Stage::Compute;
-  }
-}
-
 std::map<uint32_t, uint64_t> constants_of(const VkSpecializationInfo* info) {
   std::map<uint32_t, uint64_t> out;
   for (uint32_t i = 0; info && i < info->mapEntryCount; ++i) {
@@ -66,6 +47,26 @@ std::unique_ptr<VkPipeline_T> pipeline_of(Device& device, const VkComputePipelin
 }
 
 }  // namespace
+
+VkShaderStageFlagBits flag_of(isa::Stage stage) {
+  switch (stage) {
+    case isa::Stage::RayGeneration:
+      return VK_SHADER_STAGE_RAYGEN_BIT_KHR;
+    case isa::Stage::Miss:
+      return VK_SHADER_STAGE_MISS_BIT_KHR;
+    case isa::Stage::ClosestHit:
+      return VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
+    case isa::Stage::AnyHit:
+      return VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
+    case isa::Stage::Intersection:
+      return VK_SHADER_STAGE_INTERSECTION_BIT_KHR;
+    case isa::Stage::Callable:
+      return VK_SHADER_STAGE_CALLABLE_BIT_KHR;
+    case isa::Stage::Compute:
+      break;
+  }
+  return VK_SHADER_STAGE_COMPUTE_BIT;
+}
 
 PipelineStage stage_of(Device& device, const VkPipelineShaderStageCreateInfo& info) {
   PipelineStage out;
@@ -155,7 +156,7 @@ const glint::pipeline::LinkedShaders& VkPipeline_T::compiled(VkDevice_T& device)
     pipeline::CompiledStage made = pipeline::compile_stage(
         *each.words, {each.name, each.entry_point, each.constants, frontend::Validity::Known}, compiler,
         notes, &device.shader_cache);
-    if (made.program.stage != vulkan::isa_stage(each.stage))
+    if (vulkan::flag_of(made.program.stage) != each.stage)
       throw UserError(fmt::format("entry point '{}' of {} is of stage {}, and the pipeline wants another",
                                   each.entry_point, each.name, isa::name_of(made.program.stage)));
     programs.push_back(std::move(made.program));

@@ -31,6 +31,9 @@ struct PipelineStage {
   std::string entry_point, name;
   std::map<uint32_t, uint64_t> constants;  // by constant_id
 };
+// Returns what Vulkan calls the stage.
+VkShaderStageFlagBits flag_of(isa::Stage stage);
+
 // Throws Refusal for a stage without a module.
 PipelineStage stage_of(Device& device, const VkPipelineShaderStageCreateInfo& info);
 

@@ -47,9 +47,9 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
-    def start(self, *words):
-        """Starts `glint sweep` in the background."""
-        child = subprocess.Popen([GLINT, "sweep", *map(str, words)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    def start(self, *words, **variables):
+        """Starts `glint sweep` in the background, with these variables of the environment."""
+        child = subprocess.Popen([GLINT, "sweep", *map(str, words)], cwd=self.folder, env={**os.environ, **variables}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.addCleanup(lambda: (child.kill(), child.wait(), child.stdout.close()))
         return child
 

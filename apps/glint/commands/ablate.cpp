@@ -9,6 +9,7 @@
 #include "apps/glint/bench/bench.h"
 #include "apps/glint/lab/ablation.h"
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/config.h"
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/output.h"
 #include "apps/glint/session.h"
@@ -110,14 +111,8 @@ void add_ablate(Command app, Session& session) {
   command.add_option("--metrics", options->metrics,
                      "Metrics to show; 'glint list metrics' names them (default: eleven of them)");
   command.add_flag("--plan", options->plan, "Print the groups and the number of machines, and run nothing");
-  command
-      .add_option("-j,--jobs", options->processes,
-                  "Number of processes that run at a time; 0: one for each processor")
-      .in_range(0u, 1024u)
-      .capture_default_str();
-  command.add_option("--assets", options->assets, "Folder that has the original scene data")
-      .type_name("DIR")
-      .envname("GLINT_ASSETS");
+  add_jobs_option(command, options->processes);
+  add_assets_option(command, options->assets);
   command
       .add_option("--out", options->out,
                   "Folder for the results, with a folder for each machine; what is complete there is not run "

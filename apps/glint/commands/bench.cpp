@@ -24,11 +24,7 @@ void add_bench(Command app, Session& session) {
       "pt, sh, ao, workloads or programs; 'glint list workloads' and 'glint list programs' "
       "name them");
   command.add_flag("--small", options->small, "Run compute programs on their small inputs");
-  command
-      .add_option("-j,--jobs", options->processes,
-                  "Number of processes that run at a time; 0: one for each processor")
-      .in_range(0u, 1024u)
-      .capture_default_str();
+  add_jobs_option(command, options->processes);
   command.add_flag(
       "--resume", options->resume,
       "Leave out workloads that were completed with the same configuration, options, program and shaders");
@@ -47,9 +43,7 @@ void add_bench(Command app, Session& session) {
           "Selects the machine: timing runs cycle by cycle, functional gives only the picture and counts")
       .one_of({"timing", "functional"})
       .capture_default_str();
-  command.add_option("--assets", options->assets, "Folder that has the original scene data")
-      .type_name("DIR")
-      .envname("GLINT_ASSETS");
+  add_assets_option(command, options->assets);
   command
       .add_option(
           "--out", options->out,

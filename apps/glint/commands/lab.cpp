@@ -184,11 +184,7 @@ void add_lab(Command app, Session& session) {
       "lab", "Run an experiment on a published idea and compare the effect with the paper's");
   command.add_option("NAME", options->name,
                      "Experiment, or a TOML file that describes one (default: list the experiments)");
-  command
-      .add_option("-j,--jobs", options->processes,
-                  "Number of processes that run at a time; 0: one for each processor")
-      .in_range(0u, 1024u)
-      .capture_default_str();
+  add_jobs_option(command, options->processes);
   command.add_option("--config", options->config,
                      "Preset or file of another machine for all arms (default: the experiment's)");
   add_oracle_option(command, options->oracles);

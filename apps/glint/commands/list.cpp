@@ -6,6 +6,7 @@
 
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/config.h"
 #include "apps/glint/options/output.h"
 #include "apps/glint/options/stat_list.h"
 #include "apps/glint/session.h"
@@ -175,9 +176,7 @@ void add_list(Command app, Session& session) {
       .one_of({"scenes", "materials", "shaders", "workloads", "programs", "configs", "policies", "oracles",
                "ops", "stats", "metrics"});
   command.add_option("SCENE", options->scene, "Scene or file whose materials to list (with materials)");
-  command.add_option("--assets", options->assets, "Folder that has the original scene data (with materials)")
-      .type_name("DIR")
-      .envname("GLINT_ASSETS");
+  add_assets_option(command, options->assets, " (with materials)");
   command.add_flag("--markdown", options->markdown,
                    "Print stats or metrics as docs/stats.md and docs/metrics.md have them");
   command.add_flag("--tests", options->tests, "Print the test that checks what each op does (with ops)");

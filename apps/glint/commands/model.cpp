@@ -219,11 +219,7 @@ void add_model(Command app, Session& session) {
   command.add_flag("--inputs", options->inputs, "Print the inputs of each run, too");
   command.add_flag("--statistics-only", options->statistics_only,
                    "Compute Hong and Kim's model alone, without a pass over the scene");
-  command
-      .add_option("--assets", options->assets,
-                  "Folder that has the original scene data, as the runs were given it")
-      .type_name("DIR")
-      .envname("GLINT_ASSETS");
+  add_assets_option(command, options->assets, ", as the runs were given it");
   add_shader_options(command, options->shaders);
   command.callback(
       [&session, options] { session.action = [&session, options] { return model(session, *options); }; });

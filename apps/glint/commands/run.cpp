@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/config.h"
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/amber.h"
@@ -89,9 +90,7 @@ void add_scene_options(Command command, RunOptions& options) {
                   "Folder whose shaders are used instead of the workload's built-in ones")
       .type_name("DIR");
   add_frame_options(command, options.scene.frame);
-  command.add_option("--assets", options.scene.assets, "Folder that has the original scene data")
-      .type_name("DIR")
-      .envname("GLINT_ASSETS");
+  add_assets_option(command, options.scene.assets);
   command.add_flag(
       "--strict", options.strict,
       "Let accesses outside of buffers and images be faults in Amber scripts that do not declare "

@@ -1,4 +1,4 @@
-// Reads the configuration of a run, and the option --oracle.
+// Reads the configuration of a run, and has the options --oracle, --jobs and --assets.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/config.h"
 
@@ -26,6 +26,19 @@ void add_oracle_option(Command command, std::vector<std::string>& names) {
       .type_name("NAME")
       .one_of(known)
       .allow_extra_args(false);
+}
+
+void add_jobs_option(Command command, uint32_t& processes) {
+  command
+      .add_option("-j,--jobs", processes, "Number of processes that run at a time; 0: one for each processor")
+      .in_range(0u, 1024u)
+      .capture_default_str();
+}
+
+void add_assets_option(Command command, std::string& folder, const std::string& addition) {
+  command.add_option("--assets", folder, "Folder that has the original scene data" + addition)
+      .type_name("DIR")
+      .envname("GLINT_ASSETS");
 }
 
 }  // namespace glint::app

@@ -1,6 +1,7 @@
-// Makes the machine that --config, --set and --oracle ask for.
+// Makes the machine that --config, --set and --oracle ask for, and has options that several commands share.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,5 +16,11 @@ pipeline::GpuParams read_config(const setup::Resources& resources, const std::st
 
 // Adds the option --oracle. `names` gets what the user names.
 void add_oracle_option(Command command, std::vector<std::string>& names);
+
+// Adds the option --jobs. `processes` gets how many processes run at a time; 0 stands for one a processor.
+void add_jobs_option(Command command, uint32_t& processes);
+
+// Adds the option --assets. `addition` follows the sentence of its help.
+void add_assets_option(Command command, std::string& folder, const std::string& addition = "");
 
 }  // namespace glint::app
