@@ -10,8 +10,7 @@ namespace glint::core {
 using isa::Effect;
 using isa::Space;
 
-void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp,
-                          const exec::Issued& issued) const {
+void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp, const exec::Issued& issued) {
   if (issued.row->effect == Effect::Texture) {
     access.traffic = mem::Traffic::ShaderTexture;
     collect_texels(access, issued.lanes);
@@ -21,6 +20,8 @@ void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp,
   } else if (isa::is_shader_call(issued.row->effect)) {
     access.traffic = mem::Traffic::ShaderBinding;
     if (issued.row->effect == Effect::CallCandidate) collect_candidates(access, warp, issued.lanes);
+    if (issued.row->effect == Effect::CallHit && local_.by_thread)
+      collect_ray_data(access, warp, issued.lanes);
     coalesce_global(access.lines, *world_.memory, warp.regs.access, issued.lanes, mem::kSectorBytes);
   } else {
     collect_memory(access, warp, issued);
@@ -40,6 +41,19 @@ void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpConte
                      rt::kTableEntryBytes, lane);
   });
   access.num_table_lines = uint32_t(access.lines.lines().size());
+}
+
+// Collects what the shader that a ray ends with reads of the ray: a sector of its record, which is new for
+// each ray, and the weights of a triangle. Model: the shader reads both, once, together with its record of
+// the binding table.
+void AccessLines::collect_ray_data(MemoryAccess& access, const exec::WarpContext& warp, LaneMask lanes) {
+  const exec::TraceFrame& frame = warp.frame();
+  for_each_lane(lanes, [&](int lane) {
+    access.lines.add(local_.record(next_record_++), LocalLayout::kRecordBytes, lane);
+    const rt::Hit& hit = frame.ray[size_t(lane)].committed;
+    if (hit.valid() && hit.triangle_leaf != 0)
+      access.lines.add(local_.attributes(access.slot, lane), LocalLayout::kAttributeBytes, lane);
+  });
 }
 
 // Collects loads, stores and atomics. Model: lanes of a generic access that are in local memory travel as

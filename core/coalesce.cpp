@@ -53,6 +53,11 @@ void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes) {
   if (lanes == 0) return;
+  if (layout.by_thread)
+    return for_each_lane(lanes, [&](int lane) {
+      const Address offset = access.address[size_t(lane)];
+      out.add(layout.word(warp_slot, offset / 4, lane) + offset % 4, bytes, lane);
+    });
   const auto word_of = [&](LaneMask rest) { return access.address[size_t(std::countr_zero(rest))] / 4; };
   const auto with_word = [&](Address word, LaneMask rest) {
     LaneMask same = 0;
@@ -67,8 +72,7 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
     for (LaneMask rest = lanes, same = first; rest; rest &= ~same) {
       const Address wanted = word_of(rest);
       if (rest != lanes) same = with_word(wanted, rest);
-      const uint64_t word = uint64_t{warp_slot} * layout.words + wanted + byte / 4;
-      out.add_row(layout.base + word * LineList::kRowBytes, same);
+      out.add_row(layout.word(warp_slot, wanted + byte / 4, 0), same);
     }
 }
 

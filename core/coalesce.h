@@ -78,11 +78,35 @@ class LineList {
 };
 
 // Says where the lanes' stacks lie in physical memory. Word w of lane l of warp slot s is at base + ((s *
-// words + w) * 32 + l) * 4, so that lanes at the same offset share lines.
+// words + w) * 32 + l) * 4, so that lanes at the same offset share lines. With `by_thread` a lane's words lie
+// one after another, and its hit attributes behind them; records of rays lie behind the stacks of all slots.
 struct LocalLayout {
-  Address base = 0;    // physical, of this core
-  uint32_t words = 0;  // words per lane
-  uint64_t bytes_per_warp() const { return uint64_t{words} * kLanes * 4; }
+  // Vulkan-Sim's allocations begin at multiples of 256 B. It gives no record back; here a core's records
+  // begin again after so many (Choice: as those of rt.shortcuts.store_each_hit).
+  static constexpr uint32_t kApart = 256, kRecords = 1 << 16, kAttributeBytes = 12, kRecordBytes = 32;
+
+  Address base = 0;        // physical, of this core
+  uint32_t words = 0;      // words per lane
+  bool by_thread = false;  // core.local_by_thread
+  uint32_t slots = 0;      // warp slots of the core
+
+  uint64_t bytes_per_warp() const { return bytes_per_lane() * kLanes; }
+  uint64_t bytes() const { return bytes_per_warp() * slots + (by_thread ? uint64_t{kRecords} * kApart : 0); }
+  Address word(uint32_t slot, uint64_t word, int lane) const {
+    return base + slot * bytes_per_warp() +
+           (by_thread ? uint64_t(lane) * bytes_per_lane() + word * 4 : (word * kLanes + uint64_t(lane)) * 4);
+  }
+  Address attributes(uint32_t slot, int lane) const {
+    return word(slot, 0, lane) + bytes_per_lane() - kApart;
+  }
+  Address record(uint64_t number) const {
+    return base + slots * bytes_per_warp() + number % kRecords * kApart;
+  }
+
+ private:
+  uint64_t bytes_per_lane() const {
+    return by_thread ? (uint64_t{words} * 4 + kApart - 1) / kApart * kApart + kApart : uint64_t{words} * 4;
+  }
 };
 
 // Adds the lines of loads and stores at `access.address` of `lanes`. The virtual addresses must be valid,

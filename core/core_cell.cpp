@@ -28,10 +28,8 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       warps_(num_slots(params, context.world), params_, context.world, *table_,
              code_ ? code_->fetch() : nullptr, observers_),
       lsu_(params, context.l1),
-      memory_(parts(), {lsu_,
-                        {context.local_physical, context.world.local_bytes / 4},
-                        table_layout(context.world, context.tables),
-                        context.turn}),
+      memory_(parts(), {lsu_, local_layout(params, context.world, context.local_physical),
+                        table_layout(context.world, context.tables), context.turn}),
       constants_(parts(), code_ ? code_->constants() : nullptr),
       parking_(ParkingLot::make(parts(), memory_, places_)),
       rays_(parts(), context.rt, parking_.get()),
@@ -48,9 +46,12 @@ uint32_t CoreCell::num_slots(const Params& params, const exec::World& world) {
   return num_warp_slots(params, occupancy(params, world.image->num_registers));
 }
 
+LocalLayout CoreCell::local_layout(const Params& params, const exec::World& world, Address base) {
+  return {base, world.local_bytes / 4, params.local_by_thread, num_slots(params, world)};
+}
+
 uint64_t CoreCell::local_bytes(const Params& params, const exec::World& world) {
-  const LocalLayout layout{0, world.local_bytes / 4};
-  return layout.bytes_per_warp() * num_slots(params, world);
+  return local_layout(params, world, 0).bytes();
 }
 
 rt::TableLayout CoreCell::table_layout(const exec::World& world, Address base) {

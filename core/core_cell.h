@@ -57,7 +57,9 @@ class CoreCell final : public Cell {
   CoreCell(const Params& params, const Context& context);
   ~CoreCell() override;
 
-  // Returns the bytes of simulated memory that a core's lanes need for their stacks.
+  // Returns the layout of a core's stacks and rays from `base` on, and the bytes of simulated memory that
+  // they need.
+  static LocalLayout local_layout(const Params& params, const exec::World& world, Address base);
   static uint64_t local_bytes(const Params& params, const exec::World& world);
   // Returns the layout of the candidates of a core's rays in the deferred any-hit mode.
   static rt::TableLayout table_layout(const exec::World& world, Address base);

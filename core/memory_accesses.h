@@ -68,7 +68,7 @@ class MemoryAccesses {
 
   const CoreParts core_;
   Lsu& lsu_;
-  const AccessLines lines_;
+  AccessLines lines_;
   const Cycle turn_;
   const bool holds_operands_;
   std::vector<Pending> pending_;  // one per slot

@@ -276,6 +276,7 @@ struct Params {
   ConstantParams constant;
   CodeCacheParams code_cache;
   LsuParams lsu;
+  bool local_by_thread = false;  // Hardware behaves as with false.
   TextureParams texture;
   SharedParams shared;
   FenceParams fence;
@@ -335,6 +336,10 @@ struct Params {
         section(&Params::code_cache, "code_cache",
                 "Parameters of the cache behind the instruction and constant caches."),
         section(&Params::lsu, "lsu", "Parameters of the load-store unit."),
+        flag(&Params::local_by_thread, "local_by_thread",
+             "True: payloads, locals and hit attributes of a thread lie together, apart from those of other "
+             "threads, and a shader reads its ray from memory. False: words at the same place of the stacks "
+             "of a warp lie side by side, and rays are in registers."),
         section(&Params::texture, "texture", "Parameters of the texture unit."),
         section(&Params::shared, "shared", "Times of shared memory, which has 32 banks of 4 bytes."),
         section(&Params::fence, "fence", "Times of memory fences."),

@@ -31,6 +31,7 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
       {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
            rt.shortcuts.store_each_hit,
        "rt.result_store and the accesses of rt.shortcuts"},
+      {params.core.local_by_thread, "rays in memory (core.local_by_thread)"},
       {rt.oracle.fetch_hits || rt.oracle.any_lane, "rt.oracle"},
       {!params.core.fetch.perfect || !params.core.constant.perfect,
        "caches of instructions and constants (core.fetch.perfect = false or core.constant.perfect = false)"}};
@@ -67,8 +68,8 @@ struct IntervalMachine::Core {
         warps(slots),
         issue(params.core.schedulers),
         lines(params.memory.line),
-        local{world.memory->reserve(core::CoreCell::local_bytes(params.core, world)), world.local_bytes / 4} {
-  }
+        local(core::CoreCell::local_layout(
+            params.core, world, world.memory->reserve(core::CoreCell::local_bytes(params.core, world)))) {}
 
   uint32_t index;
   RayModel rays;

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: ablate_test.py GLINT SOURCE_DIR"""
 import csv
+import shlex
 import subprocess
 import sys
 
@@ -36,6 +37,16 @@ class Ablate(GlintTest):
         self.assertIn("4 groups of keys", self.ablate("--plan", "--keys").stdout)
         self.assertIn("1 groups of keys, 2 machines", self.ablate("--plan", "--only", "rt").stdout)
         self.assertFalse((self.folder / "out").exists())
+
+    def test_the_commands_run_elsewhere_leave_nothing_to_run(self):
+        given = ("--only", "rt", "--workloads", "WKND_SH", "--size", "16x16", "--spp", "1")
+        lines = self.ablate(*given, "--commands").stdout.splitlines()
+        self.assertEqual([shlex.split(line)[-1] for line in lines], ["out/ablate-a-b/from", "out/ablate-a-b/to"])
+        self.assertFalse((self.folder / "out").exists())
+        for line in lines:
+            done = self.glint(*shlex.split(line)[1:])
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.ablate(*given).stdout.count("1 workloads, 1 of them complete"), 2)
 
     def test_steps_add_up_and_every_machine_has_its_keys(self):
         done = self.ablate("--workloads", "WKND_SH", "--size", "16x16", "--spp", "1", "--order", "rt.child_order", "--metrics", "cycles", "-j", "2")

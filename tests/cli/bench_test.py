@@ -33,6 +33,11 @@ class BenchTest(unittest.TestCase):
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
+    def total(self, run, name):
+        """Returns the sum of the statistics of a run whose path ends so."""
+        with open(self.folder / run / "stats.csv", newline="") as file:
+            return sum(int(row["value"]) for row in csv.DictReader(file) if row["path"].endswith(name))
+
     def metrics(self, folder="out"):
         with open(self.folder / folder / "metrics.csv", newline="") as file:
             return {row["workload"]: row for row in csv.DictReader(file)}
@@ -137,11 +142,17 @@ class Bench(BenchTest):
 
     def test_writes_of_the_rt_unit_include_hits_that_are_stored_one_by_one(self):
         self.glint(0, "run", "SHIP_SH", *SMALL, "--config", "vulkan-sim-mobile", "--out", "run")
-        with open(self.folder / "run/stats.csv", newline="") as file:
-            hits = sum(int(row["value"]) for row in csv.DictReader(file) if row["path"].endswith("rt.hit_writes"))
+        hits = self.total("run", "rt.hit_writes")
         self.assertGreater(hits, 0)
         metrics = self.glint(0, "stats", "run", "--format", "metrics").stdout
         self.assertEqual(re.search(r"^rt_writes +(\d+) ", metrics, re.M)[1], str(hits))
+        # Each ray has read a record of its own, and 12 bytes for a hit, beside the binding table.
+        self.glint(0, "run", "SHIP_SH", *SMALL, "--config", "vulkan-sim-mobile", "--set", "core.local_by_thread=false", "--out", "beside")
+        rays, reads = ([self.total(run, name) for run in ("run", "beside")] for name in ("rt.rays", "l1.reads::shader_binding"))
+        self.assertEqual(rays[0], rays[1])
+        self.assertLessEqual(reads[1] + rays[0], reads[0])
+        self.assertLessEqual(reads[0], reads[1] + 2 * rays[0])
+        self.assertEqual(*((self.folder / run / "image.pfm").read_bytes() for run in ("run", "beside")))
         self.assertIn(f"rt_writes = {hits}\n", self.glint(0, "stats", "run", "--format", "vulkan-sim").stdout)
 
     def test_report_and_model_take_the_runs_of_metrics_csv_and_name_the_others(self):

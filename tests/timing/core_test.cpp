@@ -183,6 +183,20 @@ TEST_CASE("local memory has its own addresses and reason") {
   CHECK(core.stats().local_loads.value() == 1);
 }
 
+TEST_CASE("with memory of its own, each lane of a warp makes an access to a line of its own") {
+  Code code;
+  code.add("ld.local.v4.b32", {reg(4), reg(5), reg(6), reg(7), reg(0)}, 16);
+  code.add("exit");
+  Params params = quick_params();
+  params.local_by_thread = true;
+  OneCore core(code, params, {.local_bytes = 256});
+  core.run();
+
+  REQUIRE(core.l1.log().size() == 32);
+  for (size_t lane = 0; lane < 32; ++lane)  // 256 bytes of stack, and as many for the attributes
+    CHECK(core.l1.log()[lane].line == OneCore::kLocalBase + lane * 512);
+}
+
 TEST_CASE("a traced warp sleeps until the RT unit gives it back") {
   mem::AddressSpace space;
   const Address structure = allocate_structure(space);

@@ -26,7 +26,7 @@ struct AblateOptions {
                                       "rt_efficiency", "dram_eff",     "dram_util"};
   std::string assets, out;
   FrameOptions frame;
-  bool small = false, plan = false;
+  bool small = false, plan = false, commands = false;
   uint32_t processes = 0;
 };
 
@@ -56,6 +56,30 @@ void print_plan(const Ablation& ablation) {
     if (!arm.refused.empty()) print_output("{} is refused: {}\n", arm.folder, arm.refused);
 }
 
+// Prints the `glint bench` of each machine. Whoever runs them all, in any order and on any number of hosts,
+// leaves nothing to run for the ablation.
+void print_commands(const Ablation& ablation, const AblateOptions& options, const std::string& folder) {
+  const auto quoted = [](const std::string& word) {
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+  };
+  std::set<std::string> done;
+  for (const AblationArm& arm : ablation.arms) {
+    if (!arm.refused.empty() || !done.insert(arm.folder).second) continue;
+    const BenchOptions bench = bench_of(options, arm, folder);
+    std::string text = "glint bench";
+    for (const std::string& name : bench.names) text += " " + quoted(name);
+    text += " --config " + quoted(bench.config);
+    for (const std::string& setting : bench.settings) text += " --set " + quoted(setting);
+    for (const std::string& word : bench.frame.arguments()) text += " " + quoted(word);
+    if (bench.small) text += " --small";
+    if (!bench.assets.empty()) text += " --assets " + quoted(bench.assets);
+    if (bench.processes) text += fmt::format(" -j {}", bench.processes);
+    print_output("{} --stats {} --resume --out {}\n", text, bench.stats, quoted(bench.out));
+  }
+}
+
 Exit ablate(const Session& session, AblateOptions options) {
   const auto has = [&](const char* kind) {
     return std::find(options.kinds.begin(), options.kinds.end(), kind) != options.kinds.end();
@@ -63,13 +87,14 @@ Exit ablate(const Session& session, AblateOptions options) {
   options.ablation.alone = has("alone"), options.ablation.back = has("back"),
   options.ablation.steps = has("step");
   const Ablation ablation = plan_ablation(session.resources, options.ablation);
-  print_plan(ablation);
-  if (options.plan) return Exit::Ok;
   const auto stem = [](const std::string& config) { return std::filesystem::path(config).stem().string(); };
   const std::string folder =
       !options.out.empty()
           ? options.out
           : fmt::format("out/ablate-{}-{}", stem(options.ablation.from), stem(options.ablation.to));
+  if (options.commands) return print_commands(ablation, options, folder), Exit::Ok;
+  print_plan(ablation);
+  if (options.plan) return Exit::Ok;
   std::set<std::string> done;
   for (const AblationArm& arm : ablation.arms) {
     if (!arm.refused.empty() || !done.insert(arm.folder).second) continue;
@@ -111,6 +136,9 @@ void add_ablate(Command app, Session& session) {
   command.add_option("--metrics", options->metrics,
                      "Metrics to show; 'glint list metrics' names them (default: eleven of them)");
   command.add_flag("--plan", options->plan, "Print the groups and the number of machines, and run nothing");
+  command.add_flag(
+      "--commands", options->commands,
+      "Print the 'glint bench' of each machine, to be run elsewhere or side by side, and run nothing");
   add_jobs_option(command, options->processes);
   add_assets_option(command, options->assets);
   command

@@ -118,6 +118,20 @@ TEST_CASE_METHOD(Fixture, "four words of local memory are four lines, one for ea
   for (size_t i = 0; i < 4; ++i) CHECK(list.lines()[i].line == 0x10000 + (4 + i) * 128);
 }
 
+TEST_CASE_METHOD(Fixture, "stacks of single threads share no sector, and a vector of a lane is one sector") {
+  const LocalLayout layout{0x10000, 65, true, 4};  // 260 bytes, which take 512, and 256 of attributes
+  access.address.fill(16);
+  coalesce_local(list, layout, 3, access, kAllLanes, 16);
+
+  REQUIRE(list.lines().size() == 32);
+  CHECK(list.num_sectors() == 32);
+  for (size_t i = 0; i < 32; ++i) CHECK(list.lines()[i].line == 0x10000 + (3 * 32 + i) * 768);
+  CHECK(layout.attributes(3, 31) == 0x10000 + (3 * 32 + 31) * 768 + 512);
+  CHECK(layout.record(1) == 0x10000 + 4 * 32 * 768 + 256);
+  CHECK(layout.record(LocalLayout::kRecords) == layout.record(0));
+  CHECK(layout.bytes() == 4 * 32 * 768 + uint64_t{LocalLayout::kRecords} * 256);
+}
+
 TEST_CASE_METHOD(Fixture,
                  "the parts of a line that are touched whole are known, and those touched in part are not") {
   with_stride(8, 4, 0x0000'000f);
