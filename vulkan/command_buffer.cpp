@@ -9,6 +9,8 @@ void VkCommandBuffer_T::reset() {
   failure = VK_SUCCESS;
   commands.clear();
   bound = bound_for_rays = {};
+  graphics_pipeline.clear();
+  rendering = {};
 }
 
 void VkCommandBuffer_T::append_to(glint::vulkan::CommandList& list) const {

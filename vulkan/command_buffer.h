@@ -15,6 +15,7 @@
 #include "vulkan/descriptor_set.h"
 #include "vulkan/instance.h"
 #include "vulkan/queue.h"
+#include "vulkan/render_pass.h"
 
 namespace glint::vulkan {
 
@@ -62,6 +63,8 @@ struct VkCommandBuffer_T : glint::vulkan::Dispatchable {
   glint::vulkan::CommandList commands;
   // What is bound for dispatches, and what is bound for rays. Push constants are written to both.
   glint::vulkan::Bindings bound, bound_for_rays;
+  std::string graphics_pipeline;  // the name of the one that is bound
+  glint::vulkan::Rendering rendering;
 };
 
 struct VkCommandPool_T {

@@ -46,7 +46,8 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   std::set<VkAccelerationStructureKHR> structures;
   std::vector<VkAccelerationStructureKHR> unplaced_structures;  // Their buffers have no memory yet.
   // They give objects names.
-  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, ray_pipelines_made = 0;
+  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, ray_pipelines_made = 0,
+           graphics_pipelines_made = 0;
   glint::vulkan::DeviceClock clock;
   glint::vulkan::Recording recording;
   glint::pipeline::Device gpu;  // runs launches
@@ -54,6 +55,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
     uint64_t all = 0, timed = 0;
     glint::Cycle cycles = 0;  // of those that were timed
   } launches;
+  uint64_t frames = 0;   // that were presented
   bool is_lost = false;  // A launch did something that ends the device.
   VkQueue_T queue{*this};
 };

@@ -22,6 +22,10 @@ bool is_depth(VkFormat format) {
   return std::string_view(name_of(format)).substr(0, 11) == "VK_FORMAT_D";
 }
 
+bool has_depth_and_stencil(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
+}
+
 // Returns whether shaders may store to images of a format: those that SPIR-V has names for.
 bool can_store(exec::TexelFormat format) {
   const exec::FormatInfo& info = exec::info_of(format);
@@ -63,7 +67,9 @@ std::optional<exec::TexelFormat> format_of(VkFormat format) {
   return exec::format_of_vulkan(name_of(format));
 }
 
+// Choice: an image of depth and stencil has depth alone, because nothing is drawn to it.
 exec::TexelFormat texel_format_of(VkFormat format) {
+  if (has_depth_and_stencil(format)) format = VK_FORMAT_D32_SFLOAT;
   if (const auto out = format_of(format)) return *out;
   throw Refusal(VK_ERROR_FORMAT_NOT_SUPPORTED, fmt::format("format {} is not there", int(format)));
 }
@@ -92,11 +98,10 @@ VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
 }
 
 // Returns what the device pretends of images with a format. A universal queue has to have formats of colour,
-// depth and stencil: Dawn ends the process where there is none. Images that both depth and stencil need
-// cannot be made.
+// depth and stencil: Dawn ends the process where there is none.
 VkFormatFeatureFlags2 pretended_features_of(const PhysicalDevice& device, VkFormat format) {
   if (!device.instance.settings.is_universal) return 0;
-  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if (has_depth_and_stencil(format)) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
   const auto texels = format_of(format);
   if (!texels) return 0;
   if (is_depth(format)) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -129,10 +134,9 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
                                              VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
                                              VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT;
   const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
-  const VkImageUsageFlags possible =
-      usage_of(image_features_of(format) | pretended_features_of(device, format));
-  const bool is_usable =
-      image_features_of(format) && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
+  const VkFormatFeatureFlags2 features = image_features_of(format) | pretended_features_of(device, format);
+  const VkImageUsageFlags possible = usage_of(features);
+  const bool is_usable = features && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
   if (!is_tiled || !is_usable || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkPhysicalDeviceLimits& limits = device.core.limits;
   const uint32_t width = type == VK_IMAGE_TYPE_1D   ? limits.maxImageDimension1D

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vulkan/vk_icd.h>
 
+#include "vulkan/window_system.h"
+
 // A handle is a pointer to an opaque structure, such as VkBuffer_T, and the driver defines these structures.
 // So a handle of the application is an object of the driver without a cast.
 namespace glint::vulkan {

@@ -8,6 +8,7 @@
 #include "vulkan/chain.h"
 #include "vulkan/device.h"
 #include "vulkan/memory.h"
+#include "vulkan/swapchain.h"
 
 namespace glint::vulkan {
 namespace {
@@ -68,7 +69,12 @@ VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, V
 }
 VkResult BindImageMemory2(Device& device, uint32_t count, const VkBindImageMemoryInfo* infos) {
   for (uint32_t i = 0; i < count; ++i)
-    BindImageMemory(device, infos[i].image, infos[i].memory, infos[i].memoryOffset);
+    if (const auto* of = find_in_chain<VkBindImageMemorySwapchainInfoKHR>(
+            &infos[i], VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_SWAPCHAIN_INFO_KHR);
+        of && of->swapchain)
+      bind_to_swapchain(device, infos[i].image, *of);
+    else
+      BindImageMemory(device, infos[i].image, infos[i].memory, infos[i].memoryOffset);
   return VK_SUCCESS;
 }
 

@@ -35,6 +35,11 @@ namespace glint::vulkan {
 
 using Image = VkImage_T;
 
+// These commands serve swapchains, too.
+VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out);
+void DestroyImage(Device& device, VkImage image);
+VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset);
+
 // Returns the format that the simulated GPU has for a format of Vulkan, or nothing.
 std::optional<exec::TexelFormat> format_of(VkFormat format);
 // Returns it, or throws Refusal that names the format.

@@ -1,4 +1,4 @@
-// Chooses launches of an application: by number, label, shader, or the first ones of each pipeline.
+// Chooses launches of an application: by number, frame, label, shader, or the first ones of each pipeline.
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/launch_selection.h"
 
@@ -27,11 +27,11 @@ void for_each_part(const std::string& text, char separator, Visit&& visit) {
   }
 }
 
-uint64_t number_of_text(const std::string& text) {
+uint64_t number_of_text(const std::string& text, const std::string& variable) {
   uint64_t out = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (error != std::errc() || end != text.data() + text.size())
-    throw UserError(fmt::format("GLINT_TIMING: '{}' is not a number", text));
+    throw UserError(fmt::format("{}: '{}' is not a number", variable, text));
   return out;
 }
 
@@ -41,41 +41,50 @@ bool starts_with(const std::string& text, std::string_view start) {
 
 }  // namespace
 
-LaunchSelection LaunchSelection::parse(const std::string& text) {
-  LaunchSelection out;
-  for_each_part(text, ';', [&](const std::string& choice) { out.add(choice); });
+NumberList NumberList::parse(const std::string& text, const std::string& variable) {
+  NumberList out;
+  for_each_part(text, ',', [&](const std::string& part) {
+    const size_t dash = part.find('-');
+    const uint64_t from = number_of_text(trimmed(part.substr(0, dash)), variable);
+    const uint64_t to =
+        dash == std::string::npos ? from : number_of_text(trimmed(part.substr(dash + 1)), variable);
+    if (to < from) throw UserError(fmt::format("{}: the range '{}' ends before it begins", variable, part));
+    out.ranges_.push_back({from, to});
+  });
   return out;
 }
 
-void LaunchSelection::add(const std::string& choice) {
+bool NumberList::has(uint64_t number) const {
+  return std::any_of(ranges_.begin(), ranges_.end(),
+                     [&](const Range& range) { return number >= range.from && number <= range.to; });
+}
+
+LaunchSelection LaunchSelection::parse(const std::string& text, const std::string& variable) {
+  LaunchSelection out;
+  for_each_part(text, ';', [&](const std::string& choice) { out.add(choice, variable); });
+  return out;
+}
+
+void LaunchSelection::add(const std::string& choice, const std::string& variable) {
   if (choice.empty() || choice == "none") return;
   if (choice == "all") {
     all_ = true;
   } else if (const std::string kind = choice.substr(0, choice.find(' '));
-             kind.size() < choice.size() && (kind == "launch" || kind == "dispatch" || kind == "trace")) {
-    add_numbers(kind, choice.substr(kind.size() + 1));
+             kind.size() < choice.size() &&
+             (kind == "launch" || kind == "dispatch" || kind == "trace" || kind == "frame")) {
+    numbers_.push_back({kind, NumberList::parse(choice.substr(kind.size() + 1), variable)});
   } else if (starts_with(choice, "first ")) {
-    first_ = std::max(first_, number_of_text(trimmed(choice.substr(6))));
+    first_ = std::max(first_, number_of_text(trimmed(choice.substr(6)), variable));
   } else if (starts_with(choice, "label:")) {
     labels_.push_back(choice.substr(6));
   } else if (starts_with(choice, "shader:")) {
     shaders_.push_back(choice.substr(7));
   } else {
     throw UserError(
-        fmt::format("GLINT_TIMING: '{}' is none of 'all', 'none', 'launch 0,7-9', 'dispatch 0,7-9', "
-                    "'trace 0,7-9', 'first 2', 'label:NAME' and 'shader:NAME'",
-                    choice));
+        fmt::format("{}: '{}' is none of 'all', 'none', 'launch 0,7-9', 'dispatch 0,7-9', 'trace 0,7-9', "
+                    "'frame 0,7-9', 'first 2', 'label:NAME' and 'shader:NAME'",
+                    variable, choice));
   }
-}
-
-void LaunchSelection::add_numbers(const std::string& kind, const std::string& list) {
-  for_each_part(list, ',', [&](const std::string& part) {
-    const size_t dash = part.find('-');
-    const uint64_t from = number_of_text(trimmed(part.substr(0, dash)));
-    const uint64_t to = dash == std::string::npos ? from : number_of_text(trimmed(part.substr(dash + 1)));
-    if (to < from) throw UserError(fmt::format("GLINT_TIMING: the range '{}' ends before it begins", part));
-    numbers_.push_back({kind, from, to});
-  });
 }
 
 bool LaunchSelection::takes(const LaunchFacts& launch) const {
@@ -85,9 +94,9 @@ bool LaunchSelection::takes(const LaunchFacts& launch) const {
   return all_ || launch.of_pipeline < first_ || has(shaders_, launch.shader) ||
          std::any_of(labels_.begin(), labels_.end(),
                      [&](const std::string& label) { return has(launch.labels, label); }) ||
-         std::any_of(numbers_.begin(), numbers_.end(), [&](const Range& range) {
-           return (range.kind == "launch" || range.kind == launch.kind) && launch.number >= range.from &&
-                  launch.number <= range.to;
+         std::any_of(numbers_.begin(), numbers_.end(), [&](const Numbers& each) {
+           if (each.kind == "frame") return each.list.has(launch.frame);
+           return (each.kind == "launch" || each.kind == launch.kind) && each.list.has(launch.number);
          });
 }
 

@@ -1,4 +1,4 @@
-// Chooses launches of an application: by number, label, shader, or the first ones of each pipeline.
+// Chooses launches of an application: by number, frame, label, shader, or the first ones of each pipeline.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -11,17 +11,32 @@ namespace glint::vulkan {
 struct LaunchFacts {
   std::string kind;                 // "dispatch" or "trace"
   uint64_t number = 0;              // of the launch, counted from 0 on the device over all kinds
+  uint64_t frame = 0;               // how many frames were presented before
   uint64_t of_pipeline = 0;         // how often its pipeline was launched before
   std::string shader;               // its name
   std::vector<std::string> labels;  // of debug utils that are open
 };
 
+// Is a list of numbers as a user writes it: "0,7-9".
+class NumberList {
+ public:
+  // Throws UserError that begins with the variable's name and says what is wrong.
+  static NumberList parse(const std::string& text, const std::string& variable);
+  bool has(uint64_t number) const;
+
+ private:
+  struct Range {
+    uint64_t from, to;
+  };
+  std::vector<Range> ranges_;
+};
+
 class LaunchSelection {
  public:
   // Reads choices that ';' separates: "all", "none", "launch 0,7-9" (of any kind), "dispatch 0,7-9", "trace
-  // 3", "first 2" (of each pipeline), "label:NAME", "shader:NAME". An empty text is "none". Throws UserError
-  // that says what is wrong.
-  static LaunchSelection parse(const std::string& text);
+  // 3", "frame 2", "first 2" (of each pipeline), "label:NAME", "shader:NAME". An empty text is "none". Throws
+  // UserError that begins with the variable's name and says what is wrong.
+  static LaunchSelection parse(const std::string& text, const std::string& variable);
 
   bool takes(const LaunchFacts& launch) const;
   bool is_empty() const {
@@ -29,16 +44,15 @@ class LaunchSelection {
   }
 
  private:
-  void add(const std::string& choice);
-  void add_numbers(const std::string& kind, const std::string& list);
+  void add(const std::string& choice, const std::string& variable);
 
   bool all_ = false;
   uint64_t first_ = 0;
-  struct Range {
-    std::string kind;  // "launch" for any
-    uint64_t from, to;
+  struct Numbers {
+    std::string kind;  // "launch" for any; "frame" when frames are meant
+    NumberList list;
   };
-  std::vector<Range> numbers_;
+  std::vector<Numbers> numbers_;
   std::vector<std::string> labels_, shaders_;
 };
 

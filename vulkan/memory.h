@@ -34,6 +34,10 @@ namespace glint::vulkan {
 using Buffer = VkBuffer_T;
 using DeviceMemory = VkDeviceMemory_T;
 
+// These commands serve swapchains, too.
+VkResult AllocateMemory(Device& device, const VkMemoryAllocateInfo* info, VkDeviceMemory* out);
+void FreeMemory(Device& device, VkDeviceMemory memory);
+
 // Names bytes on the host and where they are in simulated memory.
 struct HostRange {
   std::byte* data = nullptr;

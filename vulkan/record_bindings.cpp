@@ -27,9 +27,7 @@ Bindings* bound_at(CommandBuffer& commands, VkPipelineBindPoint point) {
 DescriptorSet& pushed_set(CommandBuffer& commands, VkPipelineBindPoint point, VkPipelineLayout layout,
                           uint32_t number) {
   if (number >= layout->sets.size()) throw Refusal(fmt::format("the pipeline layout has no set {}", number));
-  Bindings* const bindings = bound_at(commands, point);
-  if (!bindings) throw Refusal("descriptors are pushed for graphics, which the device does not do");
-  BoundSet& bound = bindings->sets[number];
+  BoundSet& bound = bound_at(commands, point)->sets[number];
   const DescriptorSetLayout& wanted = layout->sets[number];
   const bool goes_on = bound.pushed && bound.pushed->layout.bindings == wanted.bindings;
   bound.pushed = std::make_shared<DescriptorSet>(goes_on ? *bound.pushed : set_of(wanted));
@@ -40,7 +38,10 @@ DescriptorSet& pushed_set(CommandBuffer& commands, VkPipelineBindPoint point, Vk
 }  // namespace
 
 void CmdBindPipeline(CommandBuffer& commands, VkPipelineBindPoint point, VkPipeline pipeline) {
-  if (Bindings* const bound = bound_at(commands, point)) bound->pipeline = pipeline;
+  if (Bindings* const bound = bound_at(commands, point))
+    bound->pipeline = pipeline;
+  else
+    commands.graphics_pipeline = pipeline->name;
 }
 
 void CmdBindDescriptorSets(CommandBuffer& commands, VkPipelineBindPoint point, VkPipelineLayout,
@@ -72,12 +73,14 @@ void CmdPushConstants(CommandBuffer& commands, VkPipelineLayout, VkShaderStageFl
 
 void CmdPushDescriptorSetKHR(CommandBuffer& commands, VkPipelineBindPoint point, VkPipelineLayout layout,
                              uint32_t number, uint32_t count, const VkWriteDescriptorSet* writes) {
+  if (!bound_at(commands, point)) return;
   DescriptorSet& set = pushed_set(commands, point, layout, number);
   for (uint32_t i = 0; i < count; ++i) write(commands.device, set, writes[i]);
 }
 
 void CmdPushDescriptorSetWithTemplateKHR(CommandBuffer& commands, VkDescriptorUpdateTemplate with,
                                          VkPipelineLayout layout, uint32_t number, const void* data) {
+  if (!bound_at(commands, with->point)) return;
   write(commands.device, pushed_set(commands, with->point, layout, number), *with, data);
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/diagnostics.h"
 #include "report/files/run_directory.h"
+#include "report/picture/image_compare.h"
 #include "setup/observation_files.h"
 #include "setup/recorded_launch.h"
 #include "vulkan/guard.h"
@@ -28,6 +29,8 @@ constexpr size_t kMostRefusals = 32;  // Beyond these, only those are counted th
 constexpr size_t kNewPart = 64;
 constexpr int kMostFolders = 1000;
 constexpr std::chrono::milliseconds kBetweenTold{250};
+// The picture of the last frame is written again after this time, so that a killed application leaves one.
+constexpr std::chrono::seconds kBetweenPictures{1};
 
 // Holds the recordings that have not ended. Applications may end without destroying their devices, and the
 // system then unloads the driver.
@@ -85,7 +88,7 @@ Recording::Recording(const Settings& settings, const Messages& messages, DeviceC
     : settings_(settings),
       messages_(messages),
       clock_(clock),
-      is_on_(!settings.out.empty() || !settings.timing.is_empty()) {
+      is_on_(!settings.out.empty() || !settings.timing.is_empty() || settings.asks_for_pictures) {
   if (!is_on_) return;
   const report::RunInfo info = setup::new_run_info(settings.gpu, settings.preset, "timing");
   facts_.command = command_of_process();
@@ -128,7 +131,7 @@ bool Recording::begin() {
 void Recording::write_index(bool at_once) {
   if (!is_on_ || folder_.empty()) return;
   if (!at_once && (index_.size() - written_) * kNewPart < index_.size()) return;
-  facts_.dropped.clear();
+  facts_.dropped = dropped_;
   for (const std::string& each : commands_not_there())
     facts_.dropped.push_back({each, "the command is not there", 1});
   try {
@@ -156,6 +159,47 @@ void Recording::add(report::DeviceCommand command) {
   write_index(command.cycles.has_value() || !command.error.empty());
 }
 
+void Recording::write_pictures(const std::string& name, const std::vector<ShownImage>& images) {
+  for (size_t i = 0; i < images.size() && is_on_; ++i) {
+    report::Picture picture{images[i].width, images[i].height, {}};
+    picture.rgb.reserve(images[i].rgb.size());
+    for (const uint8_t each : images[i].rgb) picture.rgb.push_back(float(each) / 255.0f);
+    const std::string number = i == 0 ? "" : fmt::format("-{}", i + 1);
+    try {
+      report::write_file(fmt::format("{}/{}{}.png", folder_, name, number), report::png_of(picture));
+    } catch (const Error& error) {
+      return fail(error.what());
+    }
+  }
+}
+
+void Recording::write_last_frame() {
+  write_pictures("present-last", std::exchange(last_frame_, {}));
+}
+
+void Recording::add_frame(uint64_t number, VkExtent2D size, std::vector<ShownImage> images) {
+  const std::lock_guard lock(mutex_);
+  if (!begin()) return;
+  add_transfers();
+  report::DeviceCommand command;
+  command.kind = "present", command.frame = number, command.size = {size.width, size.height, 1};
+  command.begin = command.end = clock_.now();
+  command.dropped = std::exchange(dropped_in_frame_, 0);
+  if (settings_.pictures.keeps_last()) {
+    last_frame_ = std::move(images);
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_picture_) {
+      write_last_frame();
+      next_picture_ = std::chrono::steady_clock::now() + kBetweenPictures;
+    }
+  } else if (!images.empty()) {
+    const std::string name = fmt::format("present-{:04}", number);
+    write_pictures(name, images);
+    command.file = name + ".png";
+  }
+  index_.add(command);
+  write_index(false);
+}
+
 void Recording::add_refusal(const std::string& command, const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (!is_on_) return;
@@ -169,9 +213,23 @@ void Recording::add_refusal(const std::string& command, const std::string& why) 
     all.push_back({command, why, 1});
 }
 
+bool Recording::add_dropped(const std::string& what, const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  const auto same = std::find_if(dropped_.begin(), dropped_.end(),
+                                 [&](const report::NotDone& each) { return each.what == what; });
+  ++dropped_in_frame_;
+  if (same != dropped_.end()) {
+    ++same->count;
+    return false;
+  }
+  dropped_.push_back({what, why, 1});
+  return true;
+}
+
 void Recording::finish() {
   const std::lock_guard lock(mutex_);
   add_transfers();
+  if (!last_frame_.empty()) write_last_frame();
   facts_.has_ended = true;
   write_index(true);
 }

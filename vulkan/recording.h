@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "pipeline/render.h"
 #include "report/files/application_index.h"
@@ -16,6 +17,12 @@
 #include "vulkan/settings.h"
 
 namespace glint::vulkan {
+
+// Is what a presented image shows: rows from the top, with three bytes a pixel.
+struct ShownImage {
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> rgb;
+};
 
 // The folder is made at the first launch. Nothing that is there is touched: where the name is taken, the
 // folder gets a number. A file is whole or not there, and so is the directory of a launch, because both are
@@ -42,8 +49,12 @@ class Recording {
   void run(report::DeviceCommand& command, const Timed& timed);
   // Adds a launch that leaves no run directory.
   void add(report::DeviceCommand command);
+  // Adds a frame of `size` pixels that was presented, and writes its pictures as PNG: one for each image.
+  void add_frame(uint64_t number, VkExtent2D size, std::vector<ShownImage> images);
   // Notes a call that failed. Any thread may call it.
   void add_refusal(const std::string& command, const std::string& why);
+  // Counts what the device drops. Returns whether it is the first of its kind.
+  bool add_dropped(const std::string& what, const std::string& why);
   // Tells a watching process how far the launch is that runs.
   void tell_progress(const report::DeviceCommand& command, const pipeline::LaunchProgress& progress);
   // Writes the index as that of an application that has ended.
@@ -56,6 +67,8 @@ class Recording {
   void add_transfers();
   void write_index(bool at_once);
   void fail(const std::string& why);  // ends the recording
+  void write_last_frame();
+  void write_pictures(const std::string& name, const std::vector<ShownImage>& images);
   void run_in(const std::string& folder, report::DeviceCommand& command, const Timed& timed);
 
   const Settings& settings_;
@@ -64,10 +77,14 @@ class Recording {
   mutable std::mutex mutex_;  // `facts_.refused`, which any thread may add to
   report::ApplicationFacts facts_;
   report::ApplicationIndex index_;
-  size_t written_ = 0;  // commands in the file
+  std::vector<report::NotDone> dropped_;  // draws, by pipeline
+  uint64_t dropped_in_frame_ = 0;         // draws since the last frame
+  size_t written_ = 0;                    // commands in the file
   bool is_on_;
   std::string folder_;
   std::chrono::steady_clock::time_point next_told_{};
+  std::vector<ShownImage> last_frame_;  // that has no picture yet; empty: it has one
+  std::chrono::steady_clock::time_point next_picture_{};
 };
 
 }  // namespace glint::vulkan

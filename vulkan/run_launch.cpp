@@ -37,9 +37,9 @@ class Launching {
     command_.kind = launch.kind, command_.shader = launch.pipeline.name, command_.size = launch.size;
     command_.number = device_.launches.all++;
     command_.label = fmt::format("{}", fmt::join(queue.labels, " / "));
-    command_.begin = device_.clock.now();
-    const LaunchFacts facts{launch.kind, command_.number, launch.pipeline.launches++, launch.pipeline.name,
-                            queue.labels};
+    command_.begin = device_.clock.now(), command_.frame = device_.frames;
+    const LaunchFacts facts{launch.kind,          command_.number, command_.frame, launch.pipeline.launches++,
+                            launch.pipeline.name, queue.labels};
     const Settings& settings = device_.physical.instance.settings;
     mode_.timing = settings.timing.takes(facts), mode_.threads = settings.threads;
     if (mode_.timing) mode_.observe = settings.observe;

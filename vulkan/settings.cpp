@@ -105,7 +105,7 @@ Settings settings_of_environment() {
   Settings out;
   read_machine(out);
   out.timing_text = value_of("GLINT_TIMING");
-  out.timing = LaunchSelection::parse(out.timing_text);
+  out.timing = LaunchSelection::parse(out.timing_text, "GLINT_TIMING");
   out.out = value_of("GLINT_OUT");
   out.observe = observation_of(value_of("GLINT_OBSERVE"));
   if (const std::string text = value_of("GLINT_STATS"); !text.empty()) out.is_compact = is_compact(text);
@@ -114,6 +114,9 @@ Settings settings_of_environment() {
   if (const std::string text = value_of("GLINT_ON_FAULT"); !text.empty()) out.on_fault = on_fault_of(text);
   if (const std::string text = value_of("GLINT_VK_QUEUE"); !text.empty())
     out.is_universal = is_universal(text);
+  const std::string pictures = value_of("GLINT_VK_PRESENT");
+  out.pictures = PictureChoice::parse(pictures, "GLINT_VK_PRESENT"),
+  out.asks_for_pictures = !pictures.empty();
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "exec/fault.h"
 #include "pipeline/params.h"
 #include "pipeline/run_profile.h"
+#include "vulkan/frames.h"
 #include "vulkan/launch_selection.h"
 
 namespace glint::vulkan {
@@ -25,6 +26,8 @@ struct Settings {
   // GLINT_VK_QUEUE: "compute" or "universal". With the latter the device pretends to have graphics, for
   // programs that want a queue with graphics and then only compute.
   bool is_universal = false;
+  PictureChoice pictures;          // GLINT_VK_PRESENT: the presented frames that become pictures
+  bool asks_for_pictures = false;  // whether GLINT_VK_PRESENT is set
 };
 
 // Returns the settings of the process. Throws UserError that names the variable and what it may be.

@@ -39,12 +39,15 @@ bool is_command(const Json& json) {
   const auto is_text = [&](const char* key) { return json.contains(key) && json[key].is_string(); };
   if (!json.is_object() || !is_text("kind") || !is_number("begin") || !is_number("end")) return false;
   if (json["kind"] == "transfer") return is_number("count") && is_number("bytes");
+  const bool has_size = json.contains("size") && json["size"].is_array() &&
+                        std::all_of(json["size"].begin(), json["size"].end(),
+                                    [](const Json& one) { return one.is_number_unsigned(); });
+  if (!has_size || !is_number("frame")) return false;
+  if (json["kind"] == "present")
+    return (!json.contains("file") || is_text("file")) && (!json.contains("dropped") || is_number("dropped"));
   return is_number("number") && is_text("shader") && is_text("label") && is_number("instructions") &&
          is_number("faults") && json.contains("cycles") &&
-         (json["cycles"].is_null() || json["cycles"].is_number_unsigned()) && json.contains("size") &&
-         json["size"].is_array() &&
-         std::all_of(json["size"].begin(), json["size"].end(),
-                     [](const Json& one) { return one.is_number_unsigned(); });
+         (json["cycles"].is_null() || json["cycles"].is_number_unsigned());
 }
 
 bool is_not_done(const Json& json) {
@@ -60,8 +63,13 @@ void ApplicationIndex::add(const DeviceCommand& command) {
   Json json = {{"kind", command.kind}};
   if (command.kind == "transfer") {
     json.update({{"count", command.count}, {"bytes", command.bytes}});
+  } else if (command.kind == "present") {
+    json.update({{"frame", command.frame}, {"size", {command.size[0], command.size[1]}}});
+    if (!command.file.empty()) json["file"] = command.file;
+    if (command.dropped) json["dropped"] = command.dropped;
   } else {
     json.update({{"number", command.number},
+                 {"frame", command.frame},
                  {"shader", command.shader},
                  {"label", command.label},
                  {"size", command.size},

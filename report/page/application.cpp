@@ -22,6 +22,7 @@ constexpr size_t kMostRows = 200;     // of a table; the index has all launches
 constexpr int kWidth = 1000;          // of the time line, in its own units
 constexpr int kLane = 26, kBar = 20;  // height of a lane and of a bar in it
 constexpr double kLeastBar = 0.7;     // Bars are at least so wide.
+constexpr int kAxis = 14;             // height of the numbers of frames
 
 struct Lane {
   const char *name, *colour;
@@ -30,8 +31,11 @@ constexpr Lane kLanes[] = {{"timed launches", "var(--blue)"},
                            {"functional launches", "var(--orange)"},
                            {"transfers", "var(--green)"}};
 
+bool is_present(const Json& command) {
+  return command["kind"] == "present";
+}
 bool is_launch(const Json& command) {
-  return command["kind"] != "transfer";
+  return command["kind"] != "transfer" && !is_present(command);
 }
 bool is_timed(const Json& command) {
   return is_launch(command) && !command["cycles"].is_null();
@@ -76,7 +80,7 @@ struct Bar {
 std::vector<Bar> bars_of(const Json& commands, size_t lane, double cycles_per_unit) {
   std::vector<Bar> out;
   for (const Json& command : commands) {
-    if (lane_of(command) != lane) continue;
+    if (is_present(command) || lane_of(command) != lane) continue;
     const uint64_t begin = command["begin"], end = std::max<uint64_t>(begin, command["end"]);
     const double least = kLeastBar * cycles_per_unit;
     if (!out.empty() && double(end - begin) < least && double(end) - double(out.back().begin) < least) {
@@ -99,6 +103,30 @@ std::string drawn(const Json& one, const Bar& bar, size_t lane, double cycles_pe
   return bar.commands == 1 ? linked(one, *bar.first, rectangle) : rectangle;
 }
 
+// Returns the axis of frames: a line where each one was presented, with its number where there is room.
+std::string frame_axis(const Json& commands, double cycles_per_unit) {
+  constexpr int kHeight = int(std::size(kLanes)) * kLane;
+  constexpr double kLeastGap = 1.5, kNumberWidth = 28;
+  std::string out;
+  double last_line = -kLeastGap, last_number = -kNumberWidth;
+  for (const Json& command : commands) {
+    if (!is_present(command)) continue;
+    const double x = command["end"].get<double>() / cycles_per_unit;
+    if (x - last_line < kLeastGap) continue;
+    last_line = x;
+    out += fmt::format(
+        "<line x1=\"{0:.2f}\" x2=\"{0:.2f}\" y1=\"0\" y2=\"{1}\" stroke=\"currentColor\" "
+        "stroke-width=\"0.5\"><title>frame {2} ends at cycle {3}</title></line>\n",
+        x, kHeight + 2, command["frame"].dump(), command["end"].dump());
+    if (x - last_number < kNumberWidth) continue;
+    last_number = x;
+    out += fmt::format(
+        "<text x=\"{:.2f}\" y=\"{}\" font-size=\"9\" text-anchor=\"end\" fill=\"currentColor\">{}</text>\n",
+        x, kHeight + kAxis - 2, command["frame"].dump());
+  }
+  return out;
+}
+
 std::string time_line(const Json& one, uint64_t end) {
   const Json& commands = one["index"]["commands"];
   const double cycles_per_unit = std::max(1.0, double(end)) / kWidth;
@@ -110,12 +138,14 @@ std::string time_line(const Json& one, uint64_t end) {
       legend += fmt::format("{}<span style=\"color:{}\">&#9632;</span> {}", legend.empty() ? "" : " &#160; ",
                             kLanes[lane].colour, kLanes[lane].name);
   }
+  const std::string axis = frame_axis(commands, cycles_per_unit);
+  if (!axis.empty()) legend += " &#160; | the end of a frame, with its number";
   return fmt::format(
       "<figure data-figure=\"time-line\"><svg viewBox=\"0 0 {} {}\" width=\"100%\" role=\"img\" "
       "aria-label=\"Time line of commands\">\n{}</svg>\n<figcaption class=\"note\">{} &#160; Core cycles 0 "
       "to "
       "{}.</figcaption></figure>\n",
-      kWidth, std::size(kLanes) * kLane, bars, legend, shown(end));
+      kWidth, int(std::size(kLanes)) * kLane + (axis.empty() ? 0 : kAxis), bars + axis, legend, shown(end));
 }
 
 std::string cell(const std::string& content, bool is_number = false) {
@@ -149,7 +179,7 @@ std::string launch_table(const Json& one, uint64_t all_cycles) {
     const std::string name = fmt::format("{} {}", escaped_text(each, "kind"), each["number"].dump());
     rows += fmt::format("<tr><th scope=\"row\">{}</th>", linked(one, each, name)) +
             cell(escaped_text(each, "shader")) + cell(escaped_text(each, "label")) +
-            cell(size_of(each), true) + cell(shown(each["cycles"]), true) +
+            cell(shown(each["frame"]), true) + cell(size_of(each), true) + cell(shown(each["cycles"]), true) +
             cell(fmt::format("{:.1f} %",
                              100 * each["cycles"].get<double>() / double(std::max<uint64_t>(1, all_cycles))),
                  true) +
@@ -161,7 +191,8 @@ std::string launch_table(const Json& one, uint64_t all_cycles) {
                         launches.size() - kMostRows)
           : "";
   return table("launches",
-               {"Launch", "Shader", "Label", "Size", "Cycles", "Of all timed", "Warp instructions", "Faults"},
+               {"Launch", "Shader", "Label", "Frame", "Size", "Cycles", "Of all timed", "Warp instructions",
+                "Faults"},
                rows) +
          rest;
 }
@@ -193,6 +224,47 @@ std::string shader_table(const Json& index) {
   return table("shaders", {"Shader", "Launches", "Warp instructions", "Timed", "Cycles of these"}, rows);
 }
 
+// Returns the section of the frames that were presented, or "" when none was.
+std::string frames_section(const Json& one) {
+  struct Sum {
+    uint64_t launches = 0, timed = 0, instructions = 0, cycles = 0;
+  };
+  std::map<uint64_t, Sum> sums;
+  std::vector<const Json*> frames;
+  for (const Json& command : one["index"]["commands"]) {
+    if (is_present(command)) frames.push_back(&command);
+    if (!is_launch(command)) continue;
+    Sum& sum = sums[command["frame"].get<uint64_t>()];
+    ++sum.launches, sum.instructions += command["instructions"].get<uint64_t>();
+    if (is_timed(command)) ++sum.timed, sum.cycles += command["cycles"].get<uint64_t>();
+  }
+  if (frames.empty()) return "";
+  std::string rows;
+  for (size_t i = 0; i < std::min(frames.size(), kMostRows); ++i) {
+    const Json& frame = *frames[i];
+    const Sum& sum = sums[frame["frame"].get<uint64_t>()];
+    const std::string file = frame.contains("file") ? escaped_text(frame, "file") : "";
+    rows += fmt::format("<tr><th scope=\"row\">{}</th>", frame["frame"].dump()) + cell(size_of(frame), true) +
+            cell(shown(sum.launches), true) + cell(shown(sum.instructions), true) +
+            cell(shown(sum.timed), true) + cell(shown(sum.cycles), true) +
+            cell(shown(frame.value("dropped", uint64_t{0})), true) +
+            cell(file.empty() ? "" : fmt::format("<a href=\"{0}\">{0}</a>", file)) + "</tr>\n";
+  }
+  const std::string rest = frames.size() > kMostRows
+                               ? fmt::format("<p class=\"note\">{} later frames are in index.json.</p>\n",
+                                             frames.size() - kMostRows)
+                               : "";
+  return fmt::format(
+             "<section id=\"frames\">\n<h2>Frames</h2>\n<p class=\"lead\">{} frames were presented. "
+             "A launch belongs to the frame that was presented next.</p>\n",
+             shown(frames.size())) +
+         table("frames",
+               {"Frame", "Pixels", "Launches", "Warp instructions", "Timed", "Cycles of these",
+                "Dropped draws", "Picture"},
+               rows) +
+         rest + "</section>\n";
+}
+
 // Returns the section of what did not work, or "" when all did.
 std::string trouble(const Json& index) {
   std::string rows;
@@ -203,7 +275,9 @@ std::string trouble(const Json& index) {
   for (const Json& command : index["commands"])
     if (const std::string error = command.value("error", ""); !error.empty())
       add("failed", name_of(command), error);
-  for (const Json& each : index["dropped"]) add("dropped", each["what"], each["why"]);
+  for (const Json& each : index["dropped"])
+    add("dropped", fmt::format("{}, {} times", each["what"].get<std::string>(), each["count"].dump()),
+        each["why"]);
   for (const Json& each : index["refused"])
     add("refused", fmt::format("{}, {} times", each["what"].get<std::string>(), each["count"].dump()),
         each["why"]);
@@ -244,7 +318,7 @@ std::string sections_of(const Json& one) {
         "<section id=\"shaders\">\n<h2>Shaders</h2>\n<p class=\"lead\">All launches, summed by "
         "shader.</p>\n" +
         shader_table(index) + "</section>\n";
-  return out + trouble(index);
+  return out + frames_section(one) + trouble(index);
 }
 
 }  // namespace

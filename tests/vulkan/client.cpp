@@ -53,10 +53,12 @@ void Client::make_instance(const Options& options) {
   listener.messageType =
       VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
   listener.pfnUserCallback = hear, listener.pUserData = this;
-  const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  std::vector<const char*> extensions = options.instance_extensions;
+  extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   VkInstanceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, info.pApplicationInfo = &application;
-  info.enabledExtensionCount = 1, info.ppEnabledExtensionNames = &extension;
+  info.enabledExtensionCount = uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   info.enabledLayerCount = uint32_t(options.layers.size()), info.ppEnabledLayerNames = options.layers.data();
   check(vkCreateInstance(&info, nullptr, &instance), "vkCreateInstance");
   ends_.emplace_back([this] { vkDestroyInstance(instance, nullptr); });

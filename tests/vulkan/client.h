@@ -51,6 +51,7 @@ class Client {
  public:
   struct Options {
     std::vector<const char*> layers, extensions;
+    std::vector<const char*> instance_extensions;
     VkPhysicalDeviceFeatures features{};
     const void* more_features = nullptr;  // pNext of the device
   };

@@ -34,7 +34,7 @@ void add_vulkan(Command app, Session& session) {
       .add_option(
           "--timing", options->timing,
           "Launches to run cycle by cycle: all, none, launch 3, dispatch 0,7-9, trace 2, first 1 (of each "
-          "pipeline), label:NAME, shader:NAME; ';' joins several (default: none)")
+          "pipeline), frame 5, label:NAME, shader:NAME; ';' joins several (default: none)")
       .type_name("CHOICE");
   command.add_option("--config", options->config, "Preset or TOML file to read").capture_default_str();
   command.add_option("--set", options->settings, "Override one key, such as core.warps=16; repeatable")
@@ -58,6 +58,11 @@ void add_vulkan(Command app, Session& session) {
           "Selects what the device says of its queue: universal pretends to have graphics, for programs "
           "that want it and then only compute")
       .one_of({"compute", "universal"})
+      .capture_default_str();
+  command
+      .add_option("--present", options->present,
+                  "Selects the presented frames that are written as PNG: all, last, none or 'frame 0,7-9'")
+      .type_name("FRAMES")
       .capture_default_str();
   command.add_option("--threads", options->threads, "Number of host threads, which does not change results")
       .in_range(1u, 256u)

@@ -77,6 +77,7 @@ Variables variables_of(const VulkanProgram& program, const std::string& folder) 
           {"GLINT_THREADS", std::to_string(program.threads)},
           {"GLINT_ON_FAULT", program.on_fault},
           {"GLINT_VK_QUEUE", program.queue},
+          {"GLINT_VK_PRESENT", program.present},
           {"GLINT_PROGRESS", ::isatty(STDERR_FILENO) ? "1" : ""}};
 }
 
@@ -112,15 +113,17 @@ class Watching {
 // Returns what ran on one device, line by line.
 std::string account_of(const Json& index, const std::string& folder) {
   std::vector<const Json*> timed;
-  size_t launches = 0, failed = 0;
+  size_t launches = 0, failed = 0, frames = 0;
   uint64_t cycles = 0;
   for (const Json& each : index["commands"]) {
-    if (each["kind"] == "transfer") continue;
+    frames += each["kind"] == "present";
+    if (each["kind"] == "transfer" || each["kind"] == "present") continue;
     ++launches, failed += each.contains("error");
     if (each["cycles"].is_null()) continue;
     timed.push_back(&each), cycles += each["cycles"].get<uint64_t>();
   }
   std::string out = fmt::format("{} of {} launches were timed: {} cycles\n", timed.size(), launches, cycles);
+  if (frames) out += fmt::format("  {} frames were presented\n", frames);
   std::stable_sort(timed.begin(), timed.end(), [](const Json* a, const Json* b) {
     return (*a)["cycles"].get<uint64_t>() > (*b)["cycles"].get<uint64_t>();
   });
@@ -134,7 +137,8 @@ std::string account_of(const Json& index, const std::string& folder) {
       out += fmt::format("failed: {} {}: {}\n", each["kind"].get<std::string>(),
                          each["number"].get<uint64_t>(), each["error"].get<std::string>());
   for (const Json& each : index["dropped"])
-    out += fmt::format("dropped: {} ({})\n", each["what"].get<std::string>(), each["why"].get<std::string>());
+    out += fmt::format("dropped: {}, {} times ({})\n", each["what"].get<std::string>(),
+                       each["count"].get<uint64_t>(), each["why"].get<std::string>());
   for (size_t i = 0; i < std::min(index["refused"].size(), kMostLines); ++i)
     out += fmt::format("refused: {}: {}\n", index["refused"][i]["what"].get<std::string>(),
                        index["refused"][i]["why"].get<std::string>());

@@ -13,7 +13,7 @@ struct VulkanProgram {
   std::vector<std::string> command;   // the program and its arguments
   std::string timing, config, out;    // as GLINT_TIMING, GLINT_CONFIG and GLINT_OUT take them
   std::vector<std::string> settings;  // keys on top of the configuration
-  std::string on_fault = "warn", queue = "compute", stats = "full";
+  std::string on_fault = "warn", queue = "compute", stats = "full", present = "last";
   uint32_t threads = 1;
   bool profile = false, heat = false, trace = false;
   uint64_t sample = 0;

@@ -82,7 +82,7 @@ TEST_CASE("an index without commands is an index") {
 TEST_CASE("what is no index is refused with its path") {
   const std::string good = report::ApplicationIndex().text(facts());
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
-           {"\"schema\": 1", "\"schema\": 2"},
+           {"\"schema\": 2", "\"schema\": 1"},
            {"\"state\": \"ended\"", "\"state\": 7"},
            {"\"commands\": [", "\"commands\": [{\"kind\": \"dispatch\"}"},
            {"\"count\": 3", "\"count\": \"3\""}}) {
@@ -111,6 +111,24 @@ TEST_CASE("the sections of an application escape names and link the reports that
   CHECK(text.find(">dispatch 2<") < text.find(">dispatch 0<"));
   CHECK_THAT(text, Catch::Contains("62.5 %"));
   CHECK_THAT(text, Catch::Contains("vkQueueSubmit, 3 times"));
+}
+
+TEST_CASE("frames divide the launches of an application") {
+  report::ApplicationIndex index;
+  report::DeviceCommand frame;
+  frame.kind = "present", frame.size = {320, 200, 1}, frame.file = "present-0000.png";
+  frame.begin = frame.end = 100;
+  report::DeviceCommand second = dispatch(1, 50, "b");
+  second.frame = 1;
+  index.add(dispatch(0, 30, "a"));
+  index.add(frame);
+  index.add(second);
+
+  const std::string text = sections(index);
+  CHECK_THAT(text, Catch::Contains("1 frames were presented"));
+  CHECK_THAT(text, Catch::Contains("<a href=\"present-0000.png\">present-0000.png</a>"));
+  CHECK_THAT(text, Catch::Contains("frame 0 ends at cycle 100"));
+  CHECK_THAT(text, Catch::Contains("had 2 launches"));
 }
 
 TEST_CASE("a time line of many short commands has no more bars than it has places") {
