@@ -106,6 +106,7 @@ int main_of(int argc, char** argv) {
   add_lab(app, session);
   add_ablate(app, session);
   add_sweep(app, session);
+  add_paper(app, session);
   add_stats(app, session);
   add_report(app, session);
   add_characterize(app, session);

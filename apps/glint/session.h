@@ -31,6 +31,7 @@ void add_vulkan(Command app, Session& session);
 void add_bench(Command app, Session& session);
 void add_lab(Command app, Session& session);
 void add_ablate(Command app, Session& session);
+void add_paper(Command app, Session& session);
 void add_sweep(Command app, Session& session);
 void add_stats(Command app, Session& session);
 void add_report(Command app, Session& session);

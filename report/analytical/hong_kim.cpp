@@ -39,16 +39,26 @@ double value_of(const std::string& formula, const RunRecord& run, const std::str
                   "the model needs a finished run of the timing machine: glint run --mode timing");
 }
 
+// Returns the cores that a launch of so many blocks gives work to. A run with totals alone does not have them
+// one by one.
+double cores_of(const RunRecord& run, double blocks, const std::string& name) {
+  double out = 0;
+  for (const double each : run.values("gpu.core[*].warps")) out += each > 0;
+  if (run.text("statistics") == "compact") out = value_of("config(cores)", run, name);
+  return std::clamp(blocks, 1.0, std::max(out, 1.0));
+}
+
 }  // namespace
 
-HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name) {
+HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name, double launches) {
   const auto value = [&](const std::string& formula) { return value_of(formula, run, name); };
   HongKimInputs in;
-  const double warps = value("sum(core.warps)");
-  for (const double each : run.values("gpu.core[*].warps")) in.cores += each > 0;
-  in.warps = std::min(value("run(residency.warps)"), warps / in.cores);
-  in.blocks = in.warps * value("sum(core.blocks)") / warps;
-  in.repetitions = warps / in.cores / in.warps;
+  const double warps = value("sum(core.warps)"), blocks = value("sum(core.blocks)");
+  in.launches = launches;
+  in.cores = cores_of(run, blocks / launches, name);
+  in.warps = std::min(value("run(residency.warps)"), warps / launches / in.cores);
+  in.blocks = in.warps * blocks / warps;
+  in.repetitions = warps / launches / in.cores / in.warps;
   in.instructions = value("sum(core.instructions) + sum(core.sequence_slots)") / warps;
   in.barriers = value("sum(core.barriers)") / warps;
   const double memory = value(kMemoryInstructions), reads = value(kReads);
@@ -77,7 +87,7 @@ HongKimResult computation_alone(HongKimResult out) {
   const HongKimInputs& in = out.inputs;
   out.equation = 24, out.cwp = 1;
   out.computation_cycles = in.issue_cycles * in.instructions;
-  out.cycles = in.launch_latency + out.computation_cycles * in.warps * in.repetitions;
+  out.cycles = in.launches * (in.launch_latency + out.computation_cycles * in.warps * in.repetitions);
   return out;
 }
 
@@ -114,13 +124,14 @@ HongKimResult hong_kim(const HongKimInputs& in) {
     out.cycles = latency + out.computation_cycles * in.warps;
   }
   out.synchronization_cost = delay * (out.mwp - 1) * in.barriers * in.blocks * in.repetitions;
-  out.cycles = in.launch_latency + out.cycles * in.repetitions + out.synchronization_cost;
+  out.cycles = in.launches * (in.launch_latency + out.cycles * in.repetitions + out.synchronization_cost);
   return out;
 }
 
 std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult& result) {
   const HongKimInputs& in = result.inputs;
-  return {{"cores", in.cores},
+  return {{"launches", in.launches},
+          {"cores", in.cores},
           {"warps_per_core", in.warps},
           {"blocks_per_core", in.blocks},
           {"repetitions", in.repetitions},

@@ -14,6 +14,7 @@ namespace glint::report {
 // Holds what the model is given. All of it comes from statistics and configuration of a finished run of the
 // timing machine.
 struct HongKimInputs {
+  double launches = 1;      // launches one after another, which are taken to be alike
   double cores = 0;         // cores that got work
   double warps = 0;         // warps that are resident on such a core at a time (the paper's N)
   double blocks = 0;        // blocks that these warps belong to
@@ -55,9 +56,9 @@ struct HongKimResult {
 
 HongKimResult hong_kim(const HongKimInputs& inputs);
 
-// Returns the inputs of a run. Throws UserError that names what is missing when the run has no such
-// statistics, because it was not of the timing machine or did not finish.
-HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name);
+// Returns the inputs of a run, whose statistics are sums over its launches. Throws UserError that names what
+// is missing when the run has no such statistics, because it was not of the timing machine or did not finish.
+HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name, double launches = 1);
 
 // Returns names and values of inputs and results, in order, for tables.
 std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult& result);

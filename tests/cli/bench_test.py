@@ -16,9 +16,9 @@ import unittest
 GLINT, ROOT = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 SMALL = ["--size", "16x16", "--spp", "1"]
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "python"))
 sys.path.insert(0, str(ROOT / "tests/cli"))
-import check_paper  # noqa: E402
+from glint.paper import statements as check_paper  # noqa: E402
 from glint_case import read_png  # noqa: E402
 
 
@@ -244,7 +244,7 @@ class Bench(BenchTest):
 
 
 class Paper(unittest.TestCase):
-    """Tests tools/check_paper.py on figures made for it."""
+    """Tests the statements of the paper on figures made for them."""
 
     def table(self, **changes):
         rows = []
@@ -276,12 +276,17 @@ class Paper(unittest.TestCase):
         self.assertEqual(self.verdicts(self.table(), "IPC is higher on desktop", desktop=self.table()), ["does not hold"])
 
     def test_a_series_is_stable_when_its_means_stop_moving(self):
-        def series(late):
+        def series(late, start=3):
             ipc = [0.0, 9.0, 1.0] + [4.0] * 20 + [late] * 20
-            return {"SHIP_SH": [{"cycles": 100.0, "instructions": 100 * x, "ipc": x, "l1d_reads": 10.0, "l1d_miss_rate": x / 10} for x in ipc]}
+            return {"SHIP_SH": [{"cycles": 100.0, "instructions": 100 * x, "ipc": x, "l1d_reads": 10.0, "l1d_miss_rate": x / 10, "rt_warps": 4.0 if i >= start else 0.0}
+                                for i, x in enumerate(ipc)]}
         for late, verdict in ((4.0, "holds"), (12.0, "does not hold")):
             self.assertEqual(self.verdicts(self.table(), "become stable", series=series(late)), [verdict])
         self.assertEqual(self.verdicts(self.table(), "become stable"), ["cannot be judged"])
+        # Both are said: all samples, and those since the RT units are full.
+        for start, said in ((3, "without the start-up it does not hold"), (0, "without the start-up it holds")):
+            [figures] = [figures for _, text, _, figures in check_paper.evaluate(self.table(), series=series(4.0, start)) if "become stable" in text]
+            self.assertIn(said, figures)
 
     def test_misses_of_the_shaders_follow_from_the_rates(self):
         cells = {"acc_internal": "80", "acc_instance_leaf": "0", "acc_quad_leaf": "20", "acc_proc_leaf": "0", "rt_miss_rate": "0.25",

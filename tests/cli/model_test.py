@@ -45,6 +45,18 @@ class Model(GlintTest):
         (self.folder / "t.obj").unlink()
         self.expect(2, ["the file of the run's scene, 't.obj', is not here", "from the folder that the run was called from"], "model", "t")
 
+    def test_totals_alone_and_many_launches_have_the_cores_and_launches_of_the_run(self):
+        rows = {}
+        for name, words in {"full": ["SHIP_SH", "--size", "32x32"], "compact": ["SHIP_SH", "--size", "32x32", "--stats", "compact"], "bfs": ["bfs", "--small", "--stats", "compact"]}.items():
+            done = self.glint("run", *words, "--out", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.glint("model", name, "--statistics-only")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            [rows[name]] = self.table(f"{name}/models.csv")
+        self.assertEqual(rows["full"] | {"workload": ""}, rows["compact"] | {"workload": ""})
+        self.assertEqual((float(rows["full"]["cores"]), float(rows["full"]["launches"])), (8, 1))
+        self.assertEqual(float(rows["bfs"]["launches"]), len(self.table("bfs/launches.csv")))
+
     def test_statistics_alone_need_no_scene(self):
         self.simulate("WKND_SH", "one")
         done = self.glint("model", "one", "--statistics-only", "-o", "-")

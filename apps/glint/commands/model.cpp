@@ -1,5 +1,6 @@
 // Declares `glint model RUN...`, which compares cycles that analytical models predict with simulated ones.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -14,11 +15,13 @@
 #include "apps/glint/options/run_files.h"
 #include "apps/glint/options/shader_options.h"
 #include "apps/glint/session.h"
+#include "base/regular_file.h"
 #include "pipeline/interval/interval_machine.h"
 #include "pipeline/scene_world.h"
 #include "pipeline/structure_cache.h"
 #include "report/analytical/hong_kim.h"
 #include "report/analytical/model_table.h"
+#include "report/files/csv_table.h"
 #include "report/files/run_directory.h"
 #include "report/terminal/progress.h"
 #include "scenes/overrides.h"
@@ -120,12 +123,20 @@ double run_interval(const Session& session, const ModelOptions& options, const r
   return double(estimate.cycles);
 }
 
+// Returns the number of launches of a run: those of a compute program stand in a table of their own.
+double launches_of(const std::string& directory) {
+  const std::string path = directory + "/launches.csv";
+  const std::optional<std::string> text = read_regular_file(path);
+  return text ? std::max(1.0, double(report::read_csv(*text, path).rows.size())) : 1.0;
+}
+
 report::ModelRow row_of(const Session& session, const ModelOptions& options, bool with_interval,
                         const std::string& workload, const std::string& directory) {
   const report::RunRecord run = report::RunRecord::read(directory);
   tell_of_files({directory});
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
-  const report::HongKimResult model = report::hong_kim(report::hong_kim_inputs(run, directory));
+  const report::HongKimResult model =
+      report::hong_kim(report::hong_kim_inputs(run, directory, launches_of(directory)));
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
   row.predicted.push_back(model.cycles);
   row.inputs = report::hong_kim_columns(model);

@@ -1,18 +1,13 @@
 // Declares `glint sweep`, which hands its command line to the Python package: a sweep's engines are Python's.
 // SPDX-License-Identifier: Apache-2.0
-#include <cerrno>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
-#include <fmt/format.h>
 #include <memory>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/python_package.h"
 #include "apps/glint/session.h"
-#include "base/diagnostics.h"
 
 namespace glint::app {
 namespace {
@@ -26,31 +21,6 @@ struct SweepOptions {
   double memory = 0;
   bool detach = false, failed = false, yes = false, json = false, dry_run = false;
 };
-
-// Replaces this process by the package. Ctrl-C then reaches the package itself.
-Exit hand_over(const Session& session, const SweepOptions& options) {
-  const std::string package = session.resources.python_dir();
-  if (!package.empty()) {
-    const char* before = std::getenv("PYTHONPATH");
-    const std::string path = before && *before ? package + ":" + before : package;
-    ::setenv("PYTHONPATH", path.c_str(), 1);
-  }
-  char program[4096];
-  const ssize_t length = ::readlink("/proc/self/exe", program, sizeof program - 1);
-  if (length > 0) ::setenv("GLINT", std::string(program, size_t(length)).c_str(), 1);
-  std::vector<std::string> words = {options.python, "-m", "glint.sweeps"};
-  bool after = false;
-  for (const std::string& word : session.arguments) {
-    if (after) words.push_back(word);
-    after = after || word == "sweep";
-  }
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  ::execvp(pointers[0], pointers.data());
-  throw UserError({}, fmt::format("cannot start '{}': {}", options.python, std::strerror(errno)),
-                  "sweeps need Python 3.11 or newer; --python names another one");
-}
 
 void add_options(Command command, SweepOptions& options) {
   command
@@ -91,9 +61,7 @@ void add_options(Command command, SweepOptions& options) {
                      "The point that `open` unpacks: its id or the beginning of it");
   command.add_flag("--yes", options.yes, "Let `gc` remove what it lists");
   command.add_flag("--json", options.json, "Print the status as JSON");
-  command.add_option("--python", options.python, "Python to use: 3.11 or newer")
-      .envname("GLINT_PYTHON")
-      .capture_default_str();
+  add_python_option(command, options.python);
 }
 
 }  // namespace
@@ -104,8 +72,11 @@ void add_sweep(Command app, Session& session) {
       "sweep",
       "Run workloads over many configurations, on this machine or on a cluster, and collect the results");
   add_options(command, *options);
-  command.callback(
-      [&session, options] { session.action = [&session, options] { return hand_over(session, *options); }; });
+  command.callback([&session, options] {
+    session.action = [&session, options] {
+      return hand_over(session, options->python, "glint.sweeps", "sweep");
+    };
+  });
 }
 
 }  // namespace glint::app

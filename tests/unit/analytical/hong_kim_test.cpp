@@ -99,6 +99,16 @@ TEST_CASE("Accesses that hit wait for the L1", "[analytical]") {
   CHECK(hong_kim(in).memory_cycles == 10 * (100 + 15));
 }
 
+TEST_CASE("Several launches take the cycles of one so many times", "[analytical]") {
+  HongKimInputs in = small();
+  in.launch_latency = 5000;
+  const double one = hong_kim(in).cycles;
+  in.launches = 3;
+  CHECK(hong_kim(in).cycles == 3 * one);
+  in.memory_instructions = 0;
+  CHECK(hong_kim(in).cycles == 3 * (5000 + 100 * 8 * 2));
+}
+
 TEST_CASE("LumiBench's adjustment multiplies the latency by the miss rate", "[analytical]") {
   HongKimInputs in = small();
   in.miss_rate = 0.25;
