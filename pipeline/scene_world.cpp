@@ -31,32 +31,8 @@ namespace {
 
 using scenes::Model;
 
-// Names the bindings of set 0 (shaders/README.md).
-enum Binding : uint32_t {
-  kTopLevel,
-  kAccumulationImage,
-  kPictureImage,
-  kFrame,
-  kVertices,
-  kIndices,
-  kMaterials,
-  kOffsets,
-  kTextures,
-  kSpheres
-};
-
 constexpr uint64_t kLeastLarge = 50'000;  // primitives: a smaller model gains nothing from several threads
 constexpr uint32_t kOcclusionReach = 0;   // constant_id in shaders/ambient_occlusion/raygen.rgen
-constexpr uint32_t kSphereRecord = 1;     // hit record of procedural models; triangles have record 0
-
-rt::Bounds sphere_bounds(const Model& model) {
-  rt::Bounds box;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = model.center[axis] - model.radius;
-    box.high[axis] = model.center[axis] + model.radius;
-  }
-  return box;
-}
 
 uint64_t num_primitives(const Model& model, std::span<const uint32_t> indices) {
   return model.is_procedural() ? 1 : indices.size() / 3;
@@ -90,8 +66,16 @@ void copy(const std::vector<Value>& from, Value* to, uint32_t threads) {
 
 }  // namespace
 
-WorkloadShaders compile_workload(const RenderJob& job) {
-  WorkloadShaders out;
+rt::Bounds sphere_bounds(const Model& model) {
+  rt::Bounds box;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = model.center[axis] - model.radius;
+    box.high[axis] = model.center[axis] + model.radius;
+  }
+  return box;
+}
+
+frontend::GlslOptions workload_options(const RenderJob& job) {
   frontend::GlslOptions glsl = job.glsl;
   if (job.scene.alpha_test) glsl.defines.emplace_back("GLINT_ALPHA_TEST", "1");
   if (job.frame.ao_reach) {
@@ -99,6 +83,12 @@ WorkloadShaders compile_workload(const RenderJob& job) {
     glsl.specialization[kOcclusionReach] = std::bit_cast<uint32_t>(reach);
   }
   if (!job.scene.instances.empty()) glsl.defines.emplace_back("GLINT_INSTANCES", "1");
+  return glsl;
+}
+
+WorkloadShaders compile_workload(const RenderJob& job) {
+  WorkloadShaders out;
+  const frontend::GlslOptions glsl = workload_options(job);
   const CompilerParams compiler = compiler_for(job.gpu);
   const frontend::BackendOptions backend = backend_options(compiler);
   auto compile = [&](const char* file) {

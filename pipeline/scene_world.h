@@ -23,6 +23,27 @@ struct WorkloadShaders {
 };
 WorkloadShaders compile_workload(const RenderJob& job);
 
+// Returns how the shaders of a workload are compiled: the job's options, with what its scene defines.
+frontend::GlslOptions workload_options(const RenderJob& job);
+
+// Names the bindings of set 0 (shaders/README.md).
+enum SceneBinding : uint32_t {
+  kTopLevel,
+  kAccumulationImage,
+  kPictureImage,
+  kFrame,
+  kVertices,
+  kIndices,
+  kMaterials,
+  kOffsets,
+  kTextures,
+  kSpheres
+};
+inline constexpr uint32_t kSphereRecord = 1;  // hit record of procedural models; triangles have record 0
+
+// Returns the box of a procedural model.
+rt::Bounds sphere_bounds(const scenes::Model& model);
+
 // Holds memory, images and records of one launch. It cannot be moved, because `world` points into it.
 class SceneWorld {
  public:

@@ -102,6 +102,7 @@ int main_of(int argc, char** argv) {
   add_plugin_option(app, plugin_files);
   add_run(app, session);
   add_vulkan(app, session);
+  add_export(app, session);
   add_bench(app, session);
   add_lab(app, session);
   add_ablate(app, session);

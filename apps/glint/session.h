@@ -28,6 +28,7 @@ struct Session {
 // Each function adds its subcommand, whose callback sets Session::action.
 void add_run(Command app, Session& session);
 void add_vulkan(Command app, Session& session);
+void add_export(Command app, Session& session);
 void add_bench(Command app, Session& session);
 void add_lab(Command app, Session& session);
 void add_ablate(Command app, Session& session);

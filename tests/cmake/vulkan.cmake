@@ -30,3 +30,8 @@ if(TARGET glint_vulkan AND VULKAN_LOADER)
     endforeach()
   endif()
 endif()
+# The program of examples/rt_frames draws what `glint export` writes. It is built as its readers build it.
+if(TARGET glint_vulkan AND TARGET glint AND VULKAN_LOADER)
+  add_subdirectory(${PROJECT_SOURCE_DIR}/examples/rt_frames ${PROJECT_BINARY_DIR}/examples/rt_frames)
+  add_test(NAME vulkan_frames COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/vulkan/frames_test.py ${PROJECT_BINARY_DIR}/glint_icd.json ${PROJECT_SOURCE_DIR} $<TARGET_FILE:rt_frames> $<TARGET_FILE:glint>)
+endif()

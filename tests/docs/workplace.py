@@ -15,7 +15,7 @@ BENCH_OF = {f"docs/{name}.md": QUICK_SUITE for name in ("characterization", "mod
 SLOW_SCENES = {"PARK_PT": "PARTY_PT", "ROBOT_SH": "SHIP_SH"}  # scenes of millions of triangles, with the scene that is run instead
 KERNEL_ONLY = ["--only", "L1"]  # added to `glint microbench` without --only
 
-NEEDS = {"docs/vulkan.md": ("vulkaninfo", "ffmpeg")}  # Where these are not installed, or the driver is not built, the page's commands do not run.
+NEEDS = {"docs/vulkan.md": ("vulkaninfo", "ffmpeg"), "docs/frames.md": ()}  # Where these are not installed, or the driver is not built, the page's commands do not run.
 
 # These commands are not run: they build all of Glint, or have a test of their own. Their arguments are checked instead.
 NOT_RUN = ("cmake", "ninja", "ctest", "sudo", "apt-get")
@@ -59,6 +59,9 @@ def make(root: pathlib.Path, glint: pathlib.Path, folder: pathlib.Path, python: 
     built = folder / "build/release/apps/glint"
     built.mkdir(parents=True)
     (built / "glint").symlink_to(tools / "glint")
+    drawer = folder / "build/rt_frames/rt_frames"  # docs/frames.md builds it; the tests of the driver have built it
+    drawer.parent.mkdir()
+    drawer.symlink_to(glint.parent.parent.parent / "examples/rt_frames/rt_frames")
     (folder / "out").mkdir()
     rows = [[f"W{i}", *((i * 37 + j * 101 + i * i * j) % 97 for j in range(10))] for i in range(12)]  # the values do not matter
     (folder / "mine.csv").write_text("\n".join(",".join(map(str, row)) for row in [["workload", *(f"m{j}" for j in range(10))], *rows]) + "\n")

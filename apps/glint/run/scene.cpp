@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/bench/workloads.h"
@@ -51,29 +52,15 @@ void refuse_file(const std::string& what) {
 
 pipeline::RenderJob make_job(const Session& session, const SceneOptions& options,
                              const LaunchOptions& launch) {
-  const WorkloadInfo& workload = find_workload(options.shader);
-  pipeline::RenderJob job;
-  job.gpu = gpu_of(session.resources, launch);
-  job.workload = workload.workload;
-  job.frame = options.frame.frame();
+  pipeline::GpuParams gpu = gpu_of(session.resources, launch);
+  pipeline::RenderJob job = frame_job(session, options, launch.threads);
+  job.gpu = std::move(gpu);
   job.timing = launch.mode == "timing";
   job.no_skip = launch.no_skip;
-  job.threads = launch.threads;
   job.on_fault = launch.on_fault;
   job.observe = launch.observe;
   check_observation(job.observe, job.timing);
   check_max_cycles(launch.max_cycles, job.timing);
-  job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
-                                              : options.shader_dir;
-  report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
-  ProgressPipe pipe(session.progress_descriptor, "loading");
-  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing,
-                                                 [&](double part) {
-                                                   progress.update(uint64_t(100 * part), 100);
-                                                   pipe.update(uint64_t(1000 * part), 1000);
-                                                 },
-                                                 launch.threads});
-  scenes::override_scene(job.scene, options.frame.overrides());
   return job;
 }
 
@@ -138,9 +125,33 @@ std::string SceneOptions::given() const {
   return exr ? "--exr" : frame.given();
 }
 
-Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
+void check_scene(SceneOptions& options) {
   refuse_file(options.scene);
   take_workload_name(options);
+}
+
+pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads) {
+  const WorkloadInfo& workload = find_workload(options.shader);
+  pipeline::RenderJob job;
+  job.workload = workload.workload;
+  job.frame = options.frame.frame();
+  job.threads = threads;
+  job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
+                                              : options.shader_dir;
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
+  ProgressPipe pipe(session.progress_descriptor, "loading");
+  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing,
+                                                 [&](double part) {
+                                                   progress.update(uint64_t(100 * part), 100);
+                                                   pipe.update(uint64_t(1000 * part), 1000);
+                                                 },
+                                                 threads});
+  scenes::override_scene(job.scene, options.frame.overrides());
+  return job;
+}
+
+Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
+  check_scene(options);
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
   const std::unique_ptr<pipeline::StructureCache> structures =
       open_structure_cache(launch.shaders, session.plugins);
