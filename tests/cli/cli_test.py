@@ -3,6 +3,7 @@
 """usage: cli_test.py GLINT SOURCE_DIR [SUITE...]"""
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -134,6 +135,21 @@ class Configuration(GlintTest):
         self.write("gpu.toml", "[core\n")
         self.expect(2, ["gpu.toml:1"], "describe", "--config", "gpu.toml")
 
+    def test_presets_of_cards_have_the_published_rates_and_reach_their_published_bandwidths(self):
+        # boxes and triangles a cycle and unit, cores, GB/s of the memory, cycles of a load that hits in the L2 (None: a guess)
+        cards = {"turing": (8, 0.5, 68, 616, 226), "ada": (8, 2, 128, 1008, 273), "rdna2": (4, 1, 80, 512, None),
+                 "rdna4": (8, 2, 64, 640, None), "alchemist": (12, 1, 32, 560, None)}
+        children = {"cwbvh": 8, "bvh4": 4, "bvh8_12bit": 8, "bvh6": 6}
+        for card, (boxes, triangles, cores, bandwidth, l2) in cards.items():
+            text = self.glint("describe", "--config", card).stdout
+            value = lambda key: re.search(rf'^{re.escape(key)} = "?([^"\n]*)"?$', text, re.M)[1]
+            rate = lambda test: float(value(f"rt.{test}.units")) / float(value(f"rt.{test}.interval"))
+            self.assertEqual((children[value("bvh.format")] * rate("box"), rate("triangle"), int(value("cores"))), (boxes, triangles, cores), card)
+            peak = float(value("memory.dram.clock_mhz")) * 1e6 * 8 * 2 * int(value("memory.dram.channels"))
+            self.assertEqual(peak, bandwidth * 1e9, card)
+            if l2:
+                self.assertIn(f",{l2},", self.glint("microbench", "--config", card, "--only", "bytes=1048576;", "--format", "csv").stdout)
+
     def test_a_missing_configuration_is_refused_with_the_nearest(self):
         self.expect(2, ["did you mean 'mobile'?"], "describe", "--config", "moblie")
 
@@ -151,7 +167,7 @@ class Configuration(GlintTest):
         for preset in sorted((ROOT / "configs").glob("*.toml")):
             done = self.glint("describe", "core.warps", "--config", preset.stem)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertRegex(done.stdout, r"core\.warps = (16|32|64)\n")
+            self.assertRegex(done.stdout, r"core\.warps = (16|32|48|64)\n")
             self.assertIn("range  1 to", done.stdout)
 
     def test_a_file_stands_on_its_base_and_wins_over_it(self):
