@@ -8,6 +8,7 @@
 #include "vulkan/device.h"
 #include "vulkan/image.h"
 #include "vulkan/memory.h"
+#include "vulkan/pipeline.h"
 
 namespace glint::vulkan {
 namespace {
@@ -87,7 +88,8 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
           const frontend::Binding& use) {
   const auto set = bound.sets.find(use.set);
   if (set == bound.sets.end() || !set->second.set) return;
-  const auto binding = set->second.set->layout.bindings.find(use.binding);
+  const uint32_t number_there = bound.pipeline->binding_numbers().original(use.set, use.binding);
+  const auto binding = set->second.set->layout.bindings.find(number_there);
   if (binding == set->second.set->layout.bindings.end() || binding->second.count == 0) return;
   const Place place{set->second, binding->second};
   const pipeline::BindingPlace number{use.set, use.binding};
@@ -96,7 +98,7 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
       return bind_buffers(device, builder, place, number);
     case DescriptorKind::InlineBlock:
       return builder.bind_buffers(number,
-                                  {{set->second.set->inline_blocks.at(use.binding), place.layout.count}});
+                                  {{set->second.set->inline_blocks.at(number_there), place.layout.count}});
     case DescriptorKind::Sampler:
       return bind_samplers(builder, place, number);
     case DescriptorKind::TexelBuffer:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <memory>
 
-#include "isa/descriptors.h"
 #include "vulkan/chain.h"
 #include "vulkan/descriptor_set.h"
 #include "vulkan/device.h"
@@ -12,9 +11,6 @@ namespace glint::vulkan {
 namespace {
 
 void add_binding(DescriptorSetLayout& layout, const VkDescriptorSetLayoutBinding& from, bool is_variable) {
-  if (from.binding >= isa::kMaxBindings)
-    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT,
-                  fmt::format("binding {} is past the last one, {}", from.binding, isa::kMaxBindings - 1));
   LayoutBinding& to = layout.bindings[from.binding];
   to.type = from.descriptorType, to.count = from.descriptorCount, to.is_variable = is_variable;
   if (has_sampler(to.type) && from.pImmutableSamplers)

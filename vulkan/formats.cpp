@@ -97,11 +97,12 @@ VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
   return out;
 }
 
-// Returns what the device pretends of images with a format. A universal queue has to have formats of colour,
-// depth and stencil: Dawn ends the process where there is none.
-VkFormatFeatureFlags2 pretended_features_of(const PhysicalDevice& device, VkFormat format) {
-  if (!device.instance.settings.is_universal) return 0;
-  if (has_depth_and_stencil(format)) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
+// Returns as which attachments images with a format could serve. Vulkan asks for these formats of every
+// device, and runners of tests ask for them before they compute, but no queue of the device draws. A
+// universal queue has to have formats of both depth and stencil: Dawn ends the process where there is none.
+VkFormatFeatureFlags2 attachment_features_of(const PhysicalDevice& device, VkFormat format) {
+  if (has_depth_and_stencil(format))
+    return device.instance.settings.is_universal ? VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT : 0;
   const auto texels = format_of(format);
   if (!texels) return 0;
   if (is_depth(format)) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -113,7 +114,7 @@ void GetPhysicalDeviceFormatProperties(PhysicalDevice& device, VkFormat format, 
   // The flags of the older structure are the lower half.
   out->linearTilingFeatures = VkFormatFeatureFlags(image_features_of(format) & ~kWithoutFormat);
   out->optimalTilingFeatures =
-      out->linearTilingFeatures | VkFormatFeatureFlags(pretended_features_of(device, format));
+      out->linearTilingFeatures | VkFormatFeatureFlags(attachment_features_of(device, format));
   out->bufferFeatures = VkFormatFeatureFlags(buffer_features_of(format) & ~kWithoutFormat);
 }
 
@@ -121,7 +122,7 @@ void GetPhysicalDeviceFormatProperties2(PhysicalDevice& device, VkFormat format,
   GetPhysicalDeviceFormatProperties(device, format, &out->formatProperties);
   if (auto* more = find_in_output<VkFormatProperties3>(out, VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_3)) {
     more->linearTilingFeatures = image_features_of(format);
-    more->optimalTilingFeatures = more->linearTilingFeatures | pretended_features_of(device, format);
+    more->optimalTilingFeatures = more->linearTilingFeatures | attachment_features_of(device, format);
     more->bufferFeatures = buffer_features_of(format);
   }
 }
@@ -134,7 +135,7 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
                                              VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
                                              VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT;
   const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
-  const VkFormatFeatureFlags2 features = image_features_of(format) | pretended_features_of(device, format);
+  const VkFormatFeatureFlags2 features = image_features_of(format) | attachment_features_of(device, format);
   const VkImageUsageFlags possible = usage_of(features);
   const bool is_usable = features && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
   if (!is_tiled || !is_usable || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
@@ -145,7 +146,10 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
   out->maxExtent = {width, type == VK_IMAGE_TYPE_1D ? 1 : width, type == VK_IMAGE_TYPE_3D ? width : 1};
   out->maxMipLevels = uint32_t(std::bit_width(width));
   out->maxArrayLayers = type == VK_IMAGE_TYPE_3D ? 1 : limits.maxImageArrayLayers;
-  out->sampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  const bool has_samples = type == VK_IMAGE_TYPE_2D && tiling == VK_IMAGE_TILING_OPTIMAL &&
+                           !(flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) &&
+                           attachment_features_of(device, format);
+  out->sampleCounts = has_samples ? kSamples : VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT};
   out->maxResourceSize = kMaxAllocationBytes;
   return VK_SUCCESS;
 }

@@ -16,10 +16,14 @@ namespace {
 exec::ImageView whole_of(const VkImageCreateInfo& info) {
   exec::ImageView out;
   out.format = texel_format_of(info.format);
-  if (info.samples != VK_SAMPLE_COUNT_1_BIT || (info.flags & VK_IMAGE_CREATE_SPARSE_BINDING_BIT))
-    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse images and images of several samples are not there");
+  if (info.flags & VK_IMAGE_CREATE_SPARSE_BINDING_BIT)
+    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse images are not there");
+  if (!(kSamples & info.samples))
+    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT,
+                  fmt::format("images of {} samples are not there, only of 1 and 4", int(info.samples)));
+  out.samples = info.samples;
   out.width = info.extent.width, out.height = info.extent.height, out.depth = info.extent.depth;
-  out.levels = info.mipLevels, out.layers = info.arrayLayers;
+  out.levels = info.mipLevels, out.layers = info.arrayLayers * out.samples;
   return out;
 }
 
@@ -35,8 +39,10 @@ exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& ran
     return out;
   };
   static_assert(VK_REMAINING_MIP_LEVELS == VK_REMAINING_ARRAY_LAYERS);
+  const uint32_t samples = image.whole.samples;
   return {range.baseMipLevel, count(range.levelCount, range.baseMipLevel, image.whole.levels),
-          range.baseArrayLayer, count(range.layerCount, range.baseArrayLayer, image.whole.layers)};
+          range.baseArrayLayer * samples,
+          count(range.layerCount, range.baseArrayLayer, image.whole.layers / samples) * samples};
 }
 
 std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at) {

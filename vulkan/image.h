@@ -11,7 +11,8 @@
 // Is a window on device memory that holds texels in rows (exec/image_view.h). Images of linear and of optimal
 // tiling lie in the same way.
 struct VkImage_T {
-  glint::exec::ImageView whole;  // all levels and layers; its base is 0 before memory is bound
+  // All levels and layers, in which samples count as layers. Its base is 0 before memory is bound.
+  glint::exec::ImageView whole;
   VkImageType type = VK_IMAGE_TYPE_2D;
   VkDeviceMemory memory = nullptr;
   VkDeviceSize offset = 0;  // in the memory
@@ -40,6 +41,9 @@ VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out
 void DestroyImage(Device& device, VkImage image);
 VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset);
 
+// Images have one sample or four.
+inline constexpr VkSampleCountFlags kSamples = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT;
+
 // Returns the format that the simulated GPU has for a format of Vulkan, or nothing.
 std::optional<exec::TexelFormat> format_of(VkFormat format);
 // Returns it, or throws Refusal that names the format.
@@ -48,8 +52,8 @@ exec::TexelFormat texel_format_of(VkFormat format);
 VkFormatFeatureFlags2 image_features_of(VkFormat format);
 VkFormatFeatureFlags2 buffer_features_of(VkFormat format);
 
-// Returns the number of levels or layers that a range with VK_REMAINING_* means. Throws Refusal when the
-// image does not have them.
+// Returns the levels and layers that a range with VK_REMAINING_* means, with the samples as layers. Throws
+// Refusal when the image does not have them.
 exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& range);
 
 // Returns the host's bytes of a texel. Throws Refusal when the image has no memory.

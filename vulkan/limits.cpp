@@ -9,6 +9,7 @@
 #include "exec/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
+#include "vulkan/image.h"
 #include "vulkan/instance.h"
 
 namespace glint::vulkan {
@@ -22,8 +23,6 @@ constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_S
                                        VK_SHADER_STAGE_CALLABLE_BIT_KHR;
 // Choice: launches have threads of 32-bit numbers, so a whole axis of the largest blocks fits.
 constexpr uint32_t kMaxGroups = (1u << 22) - 1;
-// Vulkan asks for images of four samples, but only in formats that can be attachments, and here none can.
-constexpr VkSampleCountFlags kSamples = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT;
 
 void set_image_limits(VkPhysicalDeviceLimits& l) {
   l.maxImageDimension1D = l.maxImageDimension2D = l.maxImageDimensionCube = 16384;
@@ -36,8 +35,8 @@ void set_image_limits(VkPhysicalDeviceLimits& l) {
   l.minTexelOffset = l.minTexelGatherOffset = -32;
   l.maxTexelOffset = l.maxTexelGatherOffset = 31;
   l.sampledImageColorSampleCounts = l.sampledImageDepthSampleCounts = kSamples;
-  l.sampledImageStencilSampleCounts = kSamples;
-  l.sampledImageIntegerSampleCounts = l.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+  l.sampledImageStencilSampleCounts = l.sampledImageIntegerSampleCounts = kSamples;
+  l.storageImageSampleCounts = kSamples;
   l.maxSampleMaskWords = 1;
 }
 

@@ -150,12 +150,17 @@ const glint::pipeline::LinkedShaders& VkPipeline_T::compiled(VkDevice_T& device)
   std::vector<isa::Program> programs;
   std::vector<frontend::Binding> bindings;
   Diagnostics notes;
+  for (const vulkan::PipelineStage& each : stages) binding_numbers_.note(*each.words);
+  for (const auto& [place, number] : binding_numbers_.changes())
+    device.messages().info(fmt::format("{}: messages call binding {} of set {} by the number {}", name,
+                                       place.second, place.first, number));
   for (const vulkan::PipelineStage& each : stages) {
     // Choice: the driver does not validate modules. The validation layer does, where the application asks
     // for it.
-    pipeline::CompiledStage made = pipeline::compile_stage(
-        *each.words, {each.name, each.entry_point, each.constants, frontend::Validity::Known}, compiler,
-        notes, &device.shader_cache);
+    pipeline::CompiledStage made =
+        pipeline::compile_stage(binding_numbers_.changed(*each.words),
+                                {each.name, each.entry_point, each.constants, frontend::Validity::Known},
+                                compiler, notes, &device.shader_cache);
     if (vulkan::flag_of(made.program.stage) != each.stage)
       throw UserError(fmt::format("entry point '{}' of {} is of stage {}, and the pipeline wants another",
                                   each.entry_point, each.name, isa::name_of(made.program.stage)));

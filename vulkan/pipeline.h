@@ -10,6 +10,7 @@
 
 #include "pipeline/binding_table.h"
 #include "pipeline/linked_shaders.h"
+#include "vulkan/binding_numbers.h"
 #include "vulkan/descriptor_set.h"
 
 struct VkShaderModule_T {
@@ -60,7 +61,10 @@ struct VkPipeline_T {
   // Returns the compiled shaders, in the order of the stages. Throws UserError or UnsupportedError when one
   // cannot be compiled.
   const glint::pipeline::LinkedShaders& compiled(VkDevice_T& device);
+  // Says which of the application's bindings the compiled shaders know by a number of their own.
+  const glint::vulkan::BindingNumbers& binding_numbers() const { return binding_numbers_; }
 
  private:
   std::unique_ptr<const glint::pipeline::LinkedShaders> compiled_;
+  glint::vulkan::BindingNumbers binding_numbers_;
 };

@@ -87,6 +87,8 @@ void run(Queue& queue, const Blit& blit) {
 // Throws Refusal when the destination leaves its image.
 void check_destination(const Blit& blit) {
   const exec::ImageView& whole = blit.to->whole;
+  if (whole.samples > 1 || blit.from->whole.samples > 1)
+    throw Refusal("a blit of an image of several samples");
   bool fits = blit.to_level < whole.levels && blit.to_layer + blit.layers <= whole.layers &&
               blit.from_level < blit.from->whole.levels &&
               blit.from_layer + blit.layers <= blit.from->whole.layers;

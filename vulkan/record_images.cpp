@@ -28,13 +28,15 @@ struct Box {
 };
 
 Box box_of(VkImage image, const VkImageSubresourceLayers& part, const VkOffset3D& offset) {
-  return {image, part.mipLevel, part.baseArrayLayer, offset};
+  return {image, part.mipLevel, part.baseArrayLayer * image->whole.samples, offset};
 }
 
+// Returns the slices or layers of a part. The samples of a texel are layers, too.
 uint32_t slices_of(const Image& image, const VkImageSubresourceLayers& part, const VkExtent3D& extent) {
   if (image.type == VK_IMAGE_TYPE_3D) return extent.depth;
-  return part.layerCount == VK_REMAINING_ARRAY_LAYERS ? image.whole.layers - part.baseArrayLayer
-                                                      : part.layerCount;
+  const uint32_t samples = image.whole.samples;
+  return part.layerCount == VK_REMAINING_ARRAY_LAYERS ? image.whole.layers - part.baseArrayLayer * samples
+                                                      : part.layerCount * samples;
 }
 
 // Throws Refusal when the box leaves the image.
@@ -75,6 +77,7 @@ void copy_rows(Queue& queue, VkBuffer buffer, const VkBufferImageCopy2& region, 
 
 void record_copy(CommandBuffer& commands, VkBuffer buffer, VkImage image, const VkBufferImageCopy2& region,
                  Direction direction) {
+  if (image->whole.samples > 1) throw Refusal("a copy between a buffer and an image of several samples");
   const Box box = box_of(image, region.imageSubresource, region.imageOffset);
   const uint32_t slices = slices_of(*image, region.imageSubresource, region.imageExtent);
   check_box(box, region.imageExtent, slices);
@@ -140,6 +143,8 @@ void CmdCopyImage2(CommandBuffer& commands, const VkCopyImageInfo2* info) {
     const uint32_t texel = info->srcImage->whole.texel_bytes();
     if (texel != info->dstImage->whole.texel_bytes())
       throw Refusal("the texels of both images differ in size");
+    if (info->srcImage->whole.samples != info->dstImage->whole.samples)
+      throw Refusal("a copy between images that differ in their number of samples");
     check_box(from, region.extent, slices), check_box(to, region.extent, slices);
     commands.record([=, extent = region.extent](Queue& queue) {
       for (uint32_t z = 0; z < slices; ++z)
@@ -159,15 +164,6 @@ void CmdCopyImage(CommandBuffer& commands, VkImage from, VkImageLayout from_layo
   const VkCopyImageInfo2 info{
       VK_STRUCTURE_TYPE_COPY_IMAGE_INFO_2, nullptr, from, from_layout, to, to_layout, count, all.data()};
   CmdCopyImage2(commands, &info);
-}
-
-// Images have one sample, so there is nothing to resolve.
-void CmdResolveImage2(CommandBuffer&, const VkResolveImageInfo2*) {
-  throw Refusal("an image with one sample is resolved");
-}
-void CmdResolveImage(CommandBuffer& commands, VkImage, VkImageLayout, VkImage, VkImageLayout, uint32_t,
-                     const VkImageResolve*) {
-  CmdResolveImage2(commands, nullptr);
 }
 
 void CmdClearColorImage(CommandBuffer& commands, VkImage image, VkImageLayout, const VkClearColorValue* color,

@@ -65,7 +65,10 @@ Operands with_sample(ModuleLowering& l, Id id, const Operand& handle, Operands a
   Operand layer = sample ? l.scalar(*sample) : Operand::value(0);
   if (type.is_arrayed) {
     const Operand samples = l.emit().fresh("txq.num_samples.b32", {handle});
+    // A sample that the image lacks must not meet the next layer.
+    const Operand is_there = l.emit().fresh("setp.lt.u32", {layer, samples});
     layer = l.emit().value("mad.lo.u32", {at.at(2), samples, layer});
+    layer = l.emit().value("selp.b32", {layer, Operand::value(~uint32_t{0}), is_there});
   }
   at.resize(2);
   at.push_back(layer);

@@ -134,7 +134,7 @@ MappedBuffer Client::buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) {
 }
 
 BoundImage Client::image(VkFormat format, VkExtent3D extent, uint32_t levels, uint32_t layers,
-                         VkComponentMapping swizzle) {
+                         VkComponentMapping swizzle, VkSampleCountFlagBits samples) {
   BoundImage out;
   out.all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, levels, 0, layers};
   const bool has_depth = extent.depth > 1;
@@ -142,7 +142,7 @@ BoundImage Client::image(VkFormat format, VkExtent3D extent, uint32_t levels, ui
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = has_depth ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
   info.format = format, info.extent = extent, info.mipLevels = levels, info.arrayLayers = layers;
-  info.samples = VK_SAMPLE_COUNT_1_BIT, info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.samples = samples, info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   VkFormatProperties can;
   vkGetPhysicalDeviceFormatProperties(physical, format, &can);
@@ -252,8 +252,8 @@ ComputePipeline Client::pipeline(const std::string& glsl, const PipelineOptions&
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < options.bindings.size(); ++i) {
     const bool is_inline = options.bindings[i] == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
-    bindings.push_back(
-        {i, options.bindings[i], is_inline ? options.inline_bytes : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    bindings.push_back({options.numbers.empty() ? i : options.numbers[i], options.bindings[i],
+                        is_inline ? options.inline_bytes : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   }
   VkDescriptorSetLayoutCreateInfo sets{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr,
                                        options.set_flags, uint32_t(bindings.size()), bindings.data()};

@@ -43,7 +43,8 @@ struct PipelineOptions {
   uint32_t push_constant_bytes = 0;
   const VkSpecializationInfo* constants = nullptr;
   VkDescriptorSetLayoutCreateFlags set_flags = 0;
-  uint32_t inline_bytes = 0;  // of each inline uniform block
+  uint32_t inline_bytes = 0;        // of each inline uniform block
+  std::vector<uint32_t> numbers{};  // of the bindings; empty: from 0 on
 };
 
 // Holds an instance with a messenger, a device and a command pool. Everything that it made ends with it.
@@ -64,7 +65,7 @@ class Client {
   MappedBuffer buffer(VkDeviceSize bytes, VkBufferUsageFlags usage = kAllUses);
   // Makes an image with one view, and gives it the layout "general". Images with depth 1 have two axes.
   BoundImage image(VkFormat format, VkExtent3D extent, uint32_t levels = 1, uint32_t layers = 1,
-                   VkComponentMapping swizzle = {});
+                   VkComponentMapping swizzle = {}, VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
   VkSampler sampler(VkFilter filter, VkSamplerAddressMode mode);
   // Fills level 0 of an image from a buffer, or a buffer from it.
   VkResult upload(const MappedBuffer& from, const BoundImage& to, VkExtent3D extent);

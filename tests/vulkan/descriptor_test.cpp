@@ -85,6 +85,33 @@ TEST_CASE("texel buffers are read and written in their formats, from their offse
   }
 }
 
+TEST_CASE("bindings may have any numbers, and arrays and plain ones keep apart", "[portable]") {
+  Client client;
+  const MappedBuffer out = client.buffer(256), in = client.buffer(256);
+  for (uint32_t i = 0; i < kThreads; ++i) in.as<uint32_t>()[i] = i * i;
+  const std::vector<uint32_t> numbers{0, 1023, 1024, 32766};
+  const ComputePipeline pipeline =
+      client.pipeline(kHead +
+                          "layout(set = 0, binding = 32766) buffer A { uint a[]; };\n"
+                          "layout(set = 0, binding = 0) buffer B { uint b[]; };\n"
+                          "layout(set = 0, binding = 1023) buffer C { uint c[]; };\n"
+                          "layout(set = 0, binding = 1024) buffer D { uint d[]; };\n"
+                          "void main() { " +
+                          kIndex + "a[i] = b[i] + c[63u - i] + 2u * d[i]; }\n",
+                      {.bindings = {kStorage, kStorage, kStorage, kStorage}, .numbers = numbers});
+  const VkDescriptorSet set = allocate(client, pipeline.set_layout, {{kStorage, 4}});
+  for (const uint32_t number : numbers) {
+    const VkDescriptorBufferInfo all{number == 32766 ? out.buffer : in.buffer, 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet write = write_of(set, number, kStorage);
+    write.pBufferInfo = &all;
+    vkUpdateDescriptorSets(client.device, 1, &write, 0, nullptr);
+  }
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+
+  for (uint32_t i = 0; i < kThreads; ++i) REQUIRE(out.as<uint32_t>()[i] == 3 * i * i + (63 - i) * (63 - i));
+}
+
 TEST_CASE("an update template writes buffers from the application's own structure", "[portable]") {
   Client client;
   const MappedBuffer out = client.buffer(256), in = client.buffer(256);

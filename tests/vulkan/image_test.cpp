@@ -143,6 +143,102 @@ TEST_CASE("a blit halves and mirrors a picture", "[portable][graphics]") {
   CHECK(out.as<float>()[1] == 4);
 }
 
+TEST_CASE("a shader stores and fetches each sample, and a resolve takes their mean", "[portable][graphics]") {
+  Client::Options options;
+  options.features.shaderStorageImageMultisample = VK_TRUE;
+  Client client(options);
+  const VkExtent3D extent{4, 2, 1};
+  const BoundImage samples =
+      client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1, {}, VK_SAMPLE_COUNT_4_BIT);
+  const BoundImage copied =
+      client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1, {}, VK_SAMPLE_COUNT_4_BIT);
+  const BoundImage mean = client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent);
+  const MappedBuffer out = client.buffer(8 * 16), fetched = client.buffer(8 * 4);
+  const std::string head = "#version 460\nlayout(local_size_x = 4, local_size_y = 2) in;\n";
+  const std::string place = "void main() { ivec2 p = ivec2(gl_LocalInvocationID.xy);\n";
+  const ComputePipeline store = client.pipeline(
+      head + "layout(set = 0, binding = 1, rgba32f) uniform writeonly image2DMS picture;\n" + place +
+          "for (int s = 0; s < 4; ++s) imageStore(picture, p, s, vec4(p.x + 10 * p.y, s * s, s, 1)); }\n",
+      {{kStorage, kStorageImage}});
+  const ComputePipeline fetch = client.pipeline(
+      head + "layout(set = 0, binding = 0) buffer F { float f[]; };\n" +
+          "layout(set = 0, binding = 1) uniform sampler2DMS picture;\n" + place +
+          "f[p.y * 4 + p.x] = texelFetch(picture, p, p.x).y + 100 * textureSamples(picture); }\n",
+      {{kStorage, kTexture}});
+  const VkSampler sampler = client.sampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+  const VkDescriptorSet to_store =
+      set_with_image(client, store, fetched, kStorageImage, {nullptr, samples.view, VK_IMAGE_LAYOUT_GENERAL});
+  const VkDescriptorSet to_fetch =
+      set_with_image(client, fetch, fetched, kTexture, {sampler, copied.view, VK_IMAGE_LAYOUT_GENERAL});
+
+  REQUIRE(client.dispatch(store, to_store, {1, 1, 1}) == VK_SUCCESS);
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    const VkImageSubresourceLayers all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageCopy copy{all, {}, all, {}, extent};
+    vkCmdCopyImage(commands, samples.image, VK_IMAGE_LAYOUT_GENERAL, copied.image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                   &copy);
+    const VkImageResolve resolve{all, {1, 0, 0}, all, {0, 0, 0}, {3, 2, 1}};
+    vkCmdResolveImage(commands, samples.image, VK_IMAGE_LAYOUT_GENERAL, mean.image, VK_IMAGE_LAYOUT_GENERAL,
+                      1, &resolve);
+  }) == VK_SUCCESS);
+  REQUIRE(client.dispatch(fetch, to_fetch, {1, 1, 1}) == VK_SUCCESS);
+  REQUIRE(client.download(mean, out, extent) == VK_SUCCESS);
+
+  for (uint32_t y = 0; y < 2; ++y)
+    for (uint32_t x = 0; x < 4; ++x) {
+      REQUIRE(fetched.as<float>()[y * 4 + x] == float(400 + x * x));
+      if (x == 3) continue;
+      const float* const texel = &out.as<float>()[(y * 4 + x) * 4];
+      CHECK(texel[0] == float(x + 1 + 10 * y));
+      CHECK(texel[1] == 3.5f);
+      CHECK(texel[2] == 1.5f);
+    }
+}
+
+TEST_CASE("a sample that an image lacks is dropped and does not meet the next layer") {
+  Client::Options options;
+  options.features.shaderStorageImageMultisample = options.features.robustBufferAccess = VK_TRUE;
+  Client client(options);
+  const VkExtent3D extent{2, 2, 1};
+  const BoundImage layers = client.image(VK_FORMAT_R32_UINT, extent, 1, 2, {}, VK_SAMPLE_COUNT_4_BIT);
+  const MappedBuffer out = client.buffer(2 * 4);
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    const VkClearColorValue fives{.uint32 = {5, 0, 0, 0}};
+    vkCmdClearColorImage(commands, layers.image, VK_IMAGE_LAYOUT_GENERAL, &fives, 1, &layers.all);
+  }) == VK_SUCCESS);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer O { uint o[2]; };\n"
+      "layout(set = 0, binding = 1, r32ui) uniform uimage2DMSArray picture;\n"
+      "void main() { imageStore(picture, ivec3(0), int(gl_NumWorkGroups.x) + 3, uvec4(9));\n"
+      "  imageStore(picture, ivec3(1, 0, 1), 3, uvec4(8));\n"
+      "  o[0] = imageLoad(picture, ivec3(0, 0, 1), 0).x; o[1] = imageLoad(picture, ivec3(1, 0, 1), 3).x; }\n",
+      {{kStorage, kStorageImage}});
+  const VkDescriptorSet set =
+      set_with_image(client, pipeline, out, kStorageImage, {nullptr, layers.view, VK_IMAGE_LAYOUT_GENERAL});
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+
+  CHECK(out.as<uint32_t>()[0] == 5);
+  CHECK(out.as<uint32_t>()[1] == 8);
+}
+
+TEST_CASE("a resolve of an image with one sample is refused, and so is a copy of four to a buffer") {
+  Client client;
+  const VkExtent3D extent{4, 4, 1};
+  const BoundImage one = client.image(VK_FORMAT_R32_UINT, extent),
+                   other = client.image(VK_FORMAT_R32_UINT, extent);
+  const BoundImage four = client.image(VK_FORMAT_R32_UINT, extent, 1, 1, {}, VK_SAMPLE_COUNT_4_BIT);
+  const MappedBuffer out = client.buffer(64);
+
+  CHECK(client.run([&](VkCommandBuffer commands) {
+    const VkImageSubresourceLayers all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageResolve region{all, {}, all, {}, extent};
+    vkCmdResolveImage(commands, one.image, VK_IMAGE_LAYOUT_GENERAL, other.image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                      &region);
+  }) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK(client.download(four, out, extent) == VK_ERROR_VALIDATION_FAILED_EXT);
+}
+
 TEST_CASE("a format that shaders cannot store to is not announced as a storage image") {
   Client client;
   VkImageFormatProperties properties;

@@ -54,7 +54,9 @@ TEST_CASE("a submission waits for a timeline that the host signals later", "[por
   const VkSemaphoreSignalInfo signal{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr, timeline, 5};
   REQUIRE(vkSignalSemaphore(client.device, &signal) == VK_SUCCESS);
   CHECK(vkWaitForFences(client.device, 1, &fence, VK_TRUE, UINT64_MAX) == VK_SUCCESS);
-  uint64_t value = 0;
+  uint64_t value = 9;  // It may come after the fence.
+  const VkSemaphoreWaitInfo end{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, nullptr, 0, 1, &timeline, &value};
+  CHECK(vkWaitSemaphores(client.device, &end, UINT64_MAX) == VK_SUCCESS);
   REQUIRE(vkGetSemaphoreCounterValue(client.device, timeline, &value) == VK_SUCCESS);
   CHECK(value == 9);
   CHECK(out.as<uint32_t>()[15] == 77);
