@@ -149,6 +149,7 @@ struct World {
   std::shared_ptr<const rt::AnyHitMode> any_hit;  // null: immediate
   std::shared_ptr<const rt::LeafFilter> filter;   // null: any-hit shaders decide what is not opaque
   bool nearest_first_hit = true;                  // rt::TraversalRules::end_at_first_hit is its opposite
+  uint32_t added_ray_flags = 0;                   // that each rt.trace has besides its own
   TraversalCode traversal;                        // empty: the RT unit walks rays
   uint32_t local_bytes = 0;                       // bytes of a lane's stack and of what `traversal` needs
   uint32_t max_trace_depth = 1;                   // nested rt.trace (Vulkan's recursion depth)

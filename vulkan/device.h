@@ -17,6 +17,7 @@
 #include "vulkan/clock.h"
 #include "vulkan/instance.h"
 #include "vulkan/memory.h"
+#include "vulkan/process.h"
 #include "vulkan/queue.h"
 #include "vulkan/recording.h"
 
@@ -26,7 +27,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
         clock(of.gpu),
         recording(of.instance.settings, of.instance.messages, clock),
         gpu(of.gpu) {}
-  ~VkDevice_T() { physical.used_bytes -= allocated_bytes; }
+  ~VkDevice_T() { glint::vulkan::used_by_process() -= allocated_bytes; }
   VkDevice_T(const VkDevice_T&) = delete;
   VkDevice_T& operator=(const VkDevice_T&) = delete;
 

@@ -23,7 +23,6 @@ struct VkPhysicalDevice_T : glint::vulkan::Dispatchable {
   const glint::pipeline::GpuParams& gpu;
   VkPhysicalDeviceProperties core{};           // with the limits
   glint::vulkan::DeviceProperties properties;  // all others
-  std::atomic<VkDeviceSize> used_bytes = 0;    // of the heap, by all devices
 };
 
 struct VkInstance_T : glint::vulkan::Dispatchable {

@@ -121,6 +121,7 @@ void launch_rays(Queue& queue, const Bindings& bound, pipeline::DeviceTable tabl
     const uint32_t depth = trace_depth(queue.device, *bound.pipeline, *builder.world.image);
     builder.set_rays(size, depth, kDefaultCallableDepth, {bound.pipeline->name, 0, 0});
     builder.world.max_callable_depth = kMaxCallableDepth;
+    builder.world.added_ray_flags = rays.added_ray_flags;
     // Nothing needs more than the deepest chain of calls.
     if (rays.has_dynamic_stack && bound.stack_bytes)
       builder.world.local_bytes =

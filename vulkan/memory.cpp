@@ -32,7 +32,7 @@ void import_or_allocate(Device& device, DeviceMemory& memory, const VkMemoryAllo
         fmt::format("{} bytes do not fit: {} of {} bytes are allocated, and an allocation has at most {}",
                     memory.bytes, device.allocated_bytes, kHeapBytes, kMaxAllocationBytes));
   memory.backing = device.memory.add_backing(memory.bytes);
-  device.allocated_bytes += memory.bytes, device.physical.used_bytes += memory.bytes;
+  device.allocated_bytes += memory.bytes, used_by_process() += memory.bytes;
 }
 
 }  // namespace
@@ -68,8 +68,7 @@ VkResult AllocateMemory(Device& device, const VkMemoryAllocateInfo* info, VkDevi
 void FreeMemory(Device& device, VkDeviceMemory memory) {
   if (!memory) return;
   device.memory.free(memory->backing);
-  if (!memory->is_imported)
-    device.allocated_bytes -= memory->bytes, device.physical.used_bytes -= memory->bytes;
+  if (!memory->is_imported) device.allocated_bytes -= memory->bytes, used_by_process() -= memory->bytes;
   delete memory;
 }
 

@@ -8,6 +8,7 @@
 
 #include "vulkan/chain.h"
 #include "vulkan/instance.h"
+#include "vulkan/process.h"
 
 namespace glint::vulkan {
 
@@ -93,7 +94,7 @@ void GetPhysicalDeviceMemoryProperties2(PhysicalDevice& device, VkPhysicalDevice
           out, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT)) {
     std::fill_n(budget->heapBudget, VK_MAX_MEMORY_HEAPS, 0);
     std::fill_n(budget->heapUsage, VK_MAX_MEMORY_HEAPS, 0);
-    budget->heapBudget[0] = kHeapBytes, budget->heapUsage[0] = device.used_bytes;
+    budget->heapBudget[0] = kHeapBytes, budget->heapUsage[0] = used_by_process();
   }
 }
 

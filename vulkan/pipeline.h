@@ -43,6 +43,7 @@ struct RayGroups {
   uint64_t pipeline = 0;                      // the number that the handles of the groups hold
   std::vector<pipeline::ShaderGroup> groups;  // with numbers of stages
   uint32_t max_trace_depth = 0;
+  uint32_t added_ray_flags = 0;  // of each trace: exec::World::added_ray_flags
   bool has_dynamic_stack = false;
   bool has_said_depth = false;  // that traces are nested deeper than the application said
 };

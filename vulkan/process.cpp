@@ -25,4 +25,9 @@ std::string program_of_process() {
   return name.empty() || name[0] == '.' ? "program" + name : name;
 }
 
+std::atomic<uint64_t>& used_by_process() {
+  static std::atomic<uint64_t> bytes{0};
+  return bytes;
+}
+
 }  // namespace glint::vulkan

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/device_table.h"
+#include "rtunit/traversal/ray.h"
 #include "vulkan/device.h"
 #include "vulkan/pipeline.h"
 
@@ -75,6 +76,10 @@ std::unique_ptr<VkPipeline_T> pipeline_of(Device& device, const VkRayTracingPipe
     throw Refusal(fmt::format("traces may be nested {} deep, and a pipeline asks for {}", kMaxRayRecursion,
                               info.maxPipelineRayRecursionDepth));
   rays.max_trace_depth = info.maxPipelineRayRecursionDepth;
+  if (info.flags & VK_PIPELINE_CREATE_RAY_TRACING_SKIP_TRIANGLES_BIT_KHR)
+    rays.added_ray_flags |= rt::ray_flag::kSkipTriangles;
+  if (info.flags & VK_PIPELINE_CREATE_RAY_TRACING_SKIP_AABBS_BIT_KHR)
+    rays.added_ray_flags |= rt::ray_flag::kSkipAabbs;
   for (uint32_t i = 0; info.pDynamicState && i < info.pDynamicState->dynamicStateCount; ++i)
     rays.has_dynamic_stack |=
         info.pDynamicState->pDynamicStates[i] == VK_DYNAMIC_STATE_RAY_TRACING_PIPELINE_STACK_SIZE_KHR;

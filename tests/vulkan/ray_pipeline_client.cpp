@@ -18,6 +18,7 @@ const void* features() {
   more.rayTracingMaintenance1 = more.rayTracingPipelineTraceRaysIndirect2 = VK_TRUE;
   wanted.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR, wanted.pNext = &more;
   wanted.rayTracingPipeline = wanted.rayTracingPipelineTraceRaysIndirect = VK_TRUE;
+  wanted.rayTraversalPrimitiveCulling = VK_TRUE;
   return &wanted;
 }
 

@@ -88,6 +88,23 @@ TEST_CASE("all six stages run, and each may ask ray queries", "[portable][rays]"
   CHECK(client.messages.empty());
 }
 
+TEST_CASE("a pipeline may skip triangles or boxes, but not for its ray queries", "[portable][rays]") {
+  if (!RayClient::is_possible()) return;
+  RayPipelineClient client;
+  const Scene scene(client);
+  const auto traced = [&](VkPipelineCreateFlags flags) {
+    const VkPipeline pipeline = client.ray_pipeline({kSixStages, kGroups, {}, flags});
+    const RayTable table = client.table(pipeline, 0, {1}, {2, 3}, {4});
+    REQUIRE(client.trace(pipeline, scene.set, table, {8, 1, 1}) == VK_SUCCESS);
+    return scene.take();
+  };
+
+  CHECK(traced(VK_PIPELINE_CREATE_RAY_TRACING_SKIP_TRIANGLES_BIT_KHR) ==
+        std::vector<uint32_t>{1100, 1100, 1100, 14120, 1100, 1100, 1100, 1100});
+  CHECK(traced(VK_PIPELINE_CREATE_RAY_TRACING_SKIP_AABBS_BIT_KHR) ==
+        std::vector<uint32_t>{14110, 1100, 5100, 1100, 1100, 14112, 1100, 1100});
+}
+
 // Returns a pipeline whose rays go down beside each other, and what closest-hit shaders say of them.
 std::vector<uint32_t> trace_down(RayPipelineClient& client, const Scene& scene, const std::string& raygen,
                                  const std::string& closest) {
