@@ -8,9 +8,9 @@ from typing import Iterator
 
 SUBSET = ("SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP_SH", "ROBOT_SH", "BATH_PT", "PARK_PT", "CHSNT_PT")  # Table 2
 SERIES = ("PARK_PT", "BUNNY_AO", "SHIP_SH")  # Figure 6
-MACHINES = ("mobile", "desktop", "vulkan-sim-mobile", "vulkan-sim-desktop")
-LARGE_MACHINES = ("mobile", "vulkan-sim-mobile")  # those whose desktop is the paper's other machine
-DESKTOP_OF = {"mobile": "desktop", "vulkan-sim-mobile": "vulkan-sim-desktop"}
+MACHINES = ("mobile", "desktop", "vulkan-sim-mobile", "vulkan-sim-desktop", "lumibench")
+LARGE_MACHINES = ("mobile", "vulkan-sim-mobile")  # have series, large frames and the compute suite
+DESKTOP_OF = {"mobile": "desktop", "vulkan-sim-mobile": "vulkan-sim-desktop", "lumibench": "vulkan-sim-desktop"}
 # The configuration that the paper checks its subset with "adjusts the number of cores, cache size, intersection latencies, and the number of
 # warps per RT unit" and has no numbers. Choice: twice or half of each, one by one and together.
 VARIANTS = {
@@ -20,7 +20,7 @@ VARIANTS = {
     "rt-warps": ("rt.warps=8",),
 }
 VARIANTS["all"] = tuple(setting for settings in tuple(VARIANTS.values()) for setting in settings)
-_COST = {"desktop": 1.3, "vulkan-sim-mobile": 3.0, "vulkan-sim-desktop": 3.0}  # seconds of a workload, those on mobile being 1
+_COST = {"desktop": 1.3, "vulkan-sim-mobile": 3.0, "vulkan-sim-desktop": 3.0, "lumibench": 2.5}  # seconds of a workload, those on mobile being 1
 
 
 @dataclasses.dataclass(frozen=True)
