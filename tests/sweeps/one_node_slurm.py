@@ -12,13 +12,14 @@ import time
 
 NEEDED = ("slurmctld", "slurmd", "munged", "sbatch", "squeue", "scancel", "scontrol", "sinfo")
 ENDS_WITH_US = ("setpriv", "--pdeathsig", "KILL", "--")  # so that no daemon is left when the test is killed
+# Slurm runs a requeued task again when its credential has expired, which takes 120 s unless it is told otherwise.
 CONF = """
 ClusterName=glint-test
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={port}
 SlurmdPort={node_port}
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket
+AuthInfo=socket={folder}/munge.socket,cred_expire=20
 CredType=cred/munge
 SlurmUser=root
 SlurmdUser=root
