@@ -126,7 +126,7 @@ def causes(runs: Runs) -> dict[str, list[str]]:
         if flipped != (text in at_end):
             said.append("the last step flips it" if text in at_end else "the last step flips it back")
         said += [f"{name[6:]} alone flips it" for name, changed in sorted(others.items()) if name.startswith("alone-") and text in changed]
-        if text in at_end:
-            said += [f"without {name[8:]} it does not flip" for name, changed in sorted(others.items()) if name.startswith("without-") and text not in changed]
+        words = "without {} it does not flip" if text in at_end else "the second configuration without {} flips it"
+        said += [words.format(name[8:]) for name, changed in sorted(others.items()) if name.startswith("without-") and (text in changed) != (text in at_end)]
         out[text] = said
     return out
