@@ -66,6 +66,14 @@ class Frames(VulkanTest):
         self.assertIn("frame.json", self.draw("frame", code=2).stderr)
         self.assertIn("cannot read nothing/frame.json", self.draw("nothing", code=2).stderr)
 
+    def test_the_page_on_validation_has_the_tables_and_the_figure_of_the_measured_frames(self):
+        tool = vulkan_case.ROOT / "tools/compare_rt_frames.py"
+        table = subprocess.run([sys.executable, tool, "--figure", "figure.svg"], cwd=self.folder, capture_output=True, text=True, check=True).stdout
+        page = (vulkan_case.ROOT / "docs/validation.md").read_text()
+        for part in table.strip().split("\n\n"):
+            self.assertIn(part, page)
+        self.assertEqual((self.folder / "figure.svg").read_text(), (vulkan_case.ROOT / "docs/images/rt_frames.svg").read_text())
+
     def test_wrong_options_are_said(self):
         for words, message in ((["frame", "--runs"], "--runs is no option, or lacks its value"), (["--runs", "x", "frame"], "takes a number"),
                                (["--fast", "1", "frame"], "--fast is no option"), ([], "no folder is given")):
