@@ -202,7 +202,8 @@ class Configuration(GlintTest):
             self.assertEqual((keys["cores"], keys["memory.l1.size"], keys["rt.warps"]), (cores, l1, warps), name)
             self.assertEqual(int(keys["memory.dram.channels"]) * int(keys["memory.l2.slices"]) * int(keys["memory.l2.slice_size"]), l2 << 10, name)
         for name, base in (("ttp26", "vulkan-sim-mobile"), ("coop25", "vulkan-sim-desktop")):
-            self.assertEqual(said(name), said(base))
+            # Their published figures were measured before the base had memory of a thread's own.
+            self.assertEqual(said(name), said(base) | {"core.local_by_thread": "false"})
 
     def test_an_unknown_key_to_describe_is_refused_with_the_nearest(self):
         self.expect(2, ["did you mean 'core.warps'?"], "describe", "core.warp")
