@@ -80,7 +80,7 @@ def table(glint, hardware):
     return "\n".join(lines) + "\n"
 
 
-def figure(glint, hardware, outliers=8):
+def figure(glint, hardware, outliers=6):
     """Returns the frames as points on logarithmic axes, as SVG. The names are of those furthest from the mean ratio."""
     names = [name for name in glint if name in hardware]
     low = 10 ** math.floor(math.log10(min(min(glint[name], hardware[name]) for name in names)))
