@@ -30,6 +30,24 @@ class Microbench(GlintTest):
             self.assertLessEqual(abs(values["branch back edge of a loop"] - fast), 4)
             self.assertGreaterEqual(fast, latency)
 
+    def rays(self, text, *settings):
+        """Returns the values of the rows of rays with this text, by name and parameter, on one core of `mobile`."""
+        rows = json.loads(self.glint("microbench", "--config", "mobile", "--set", "cores=1", *settings, "--only", text, "--format", "json").stdout)
+        return {(row["name"], row["param"]): row["value"] for row in rows}
+
+    def test_triangles_are_tested_at_the_rate_of_the_unit(self):
+        for interval in (1, 4):
+            found, = self.rays("triangles in one ray", "--set", f"rt.triangle.interval={interval}").values()
+            self.assertLessEqual(found, 1 / interval)
+            self.assertGreater(found, 0.6 / interval)
+
+    def test_a_hit_takes_longer_in_a_deeper_tree_and_a_miss_takes_least(self):
+        values = self.rays("of one ray triangles")
+        hits = [values["hit of one ray", f"triangles={4 ** i}"] for i in (0, 2, 4, 6, 8)]
+        self.assertEqual(hits, sorted(hits))
+        self.assertGreater(hits[4], 1.5 * hits[0])
+        self.assertLess(values["miss of one ray", "triangles=1"], hits[0])
+
     def test_a_core_of_sixteen_warps_is_measured_but_for_what_needs_more(self):
         values, said = self.measure("--config", "mobile", "--set", "core.warps=16", "--only", "fma.rn.f32", "--only", "bar.sync")
         self.assertEqual(values["latency fma.rn.f32"], 4)

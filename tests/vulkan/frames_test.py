@@ -53,6 +53,23 @@ class Frames(VulkanTest):
         self.assertEqual(first["least_ns"], first["most_ns"])
         self.assertGreater(int(first["median_ns"]), 1000)
 
+    def test_probes_on_the_driver_give_the_rows_of_glint_microbench(self):
+        machine = ["--config", "mobile", "--set", "cores=1"]
+        self.glint("microbench", *machine, "--frames", "probes")
+        probes = json.loads((self.folder / "probes/probes.json").read_text())
+        chosen = [probe for probe in probes if "one ray" in probe["name"] and probe["param"] in ("triangles=1", "triangles=256")]
+        self.draw(*(f"probes/{probe[end]}" for probe in chosen for end in ("few", "many")), "--runs", 1, "--warm-up", 0, "--csv", "times.csv",
+                  GLINT_TIMING="all", GLINT_STATS="compact", GLINT_SET="cores=1")
+        (self.folder / "probes/probes.json").write_text(json.dumps(chosen))
+        rows = subprocess.run([sys.executable, vulkan_case.ROOT / "examples/rt_microbench/rows.py", "probes", "times.csv", "1365"], cwd=self.folder,
+                              capture_output=True, text=True, check=True, timeout=60).stdout
+        (self.folder / "card.csv").write_text(rows)
+        done = self.glint("microbench", *machine, "--only", "of one ray triangles", "--compare", "card.csv", "--format", "json")
+        compared = [row for row in json.loads(done.stdout) if row.get("measured") is not None]
+        self.assertEqual(len(compared), len(chosen))
+        for row in compared:
+            self.assertLess(abs(row["value"] / row["measured"] - 1), 0.05, row)
+
     def test_what_is_wrong_with_a_frame_is_said(self):
         self.glint("export", "SHIP_SH", *SMALL, "--out", "frame")
         whole = json.loads((self.folder / "frame/frame.json").read_text())

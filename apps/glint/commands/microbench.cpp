@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/glint/microbench/kernel.h"
+#include "apps/glint/microbench/rays.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/output.h"
@@ -26,6 +27,7 @@ struct MicrobenchOptions {
   std::string config = "h200";
   std::vector<std::string> settings, compare, only;
   std::string format = "table";
+  std::string frames;  // folder to write the frames of the group "rt" to; empty: measure
 };
 
 // Holds what was measured on hardware: "group|name|param" -> value.
@@ -176,25 +178,31 @@ void print_sums(const std::map<std::string, ErrorSums>& sums) {
   print_output("\n{}", report::table(rows, "<>>>>"));
 }
 
-std::vector<MicroBench> all_benchmarks() {
+std::vector<MicroBench> all_benchmarks(const std::string& probe_dir) {
   std::vector<MicroBench> all;
-  for (auto& list : {op_benchmarks(), memory_benchmarks(), flow_benchmarks()})
+  for (auto& list : {op_benchmarks(), memory_benchmarks(), flow_benchmarks(), ray_benchmarks(probe_dir)})
     all.insert(all.end(), list.begin(), list.end());
   return all;
 }
 
 std::string group_names() {
   std::vector<std::string> names;
-  for (const MicroBench& bench : all_benchmarks())
+  for (const MicroBench& bench : all_benchmarks(""))
     if (std::find(names.begin(), names.end(), bench.group) == names.end()) names.push_back(bench.group);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Exit microbench(const Session& session, const MicrobenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
+  const std::string probe_dir = session.resources.shader_dir("ray_probes");
+  if (!options.frames.empty()) {
+    write_ray_frames(probe_dir, options.frames, gpu.cores);
+    print_output("{}/probes.json\n", options.frames);
+    return Exit::Ok;
+  }
   Reference reference;
   for (const std::string& path : options.compare) read_reference(reference, path);
-  const std::vector<MicroBench> benches = all_benchmarks();
+  const std::vector<MicroBench> benches = all_benchmarks(probe_dir);
   std::vector<Row> rows;
   Skipped skipped;
   for (const MicroBench& bench : benches) {
@@ -240,6 +248,11 @@ void add_microbench(Command app, Session& session) {
           "--only", options->only,
           "Run only benchmarks with this text in group, name or parameter; the groups are " + group_names())
       .type_name("TEXT");
+  command
+      .add_option("--frames", options->frames,
+                  "Write the launches of the group rays as frames for other GPUs, and measure nothing "
+                  "(docs/frames.md)")
+      .type_name("DIR");
   command.add_option("--format", options->format, "Selects the form of the result")
       .one_of({"table", "csv", "json"})
       .capture_default_str();
