@@ -30,7 +30,7 @@ def reduced(words):
     command, rest = (words[0], words[1:]) if words else ("", [])
     if "--help" in rest:
         return words
-    if command == "run" and is_scene(rest):
+    if command in ("run", "export") and is_scene(rest):
         rest = [workplace.SLOW_SCENES.get(word, word) for word in rest]
     elif command == "bench":
         at = next((i for i, word in enumerate(rest) if word.startswith("-")), len(rest))

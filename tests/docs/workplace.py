@@ -7,7 +7,7 @@ import shutil
 import stat
 import subprocess
 
-# THE RULE OF REDUCTION holds for `glint run` of scenes and for `glint bench`; `glint ablate` only plans. Everything else runs as it is written.
+# THE RULE OF REDUCTION holds for `glint run` and `glint export` of scenes and for `glint bench`; `glint ablate` only plans. Everything else runs as it is written.
 SIZE, SAMPLES = "16x16", "1"
 BENCH = ["WKND_PT", "SHIP_SH"]  # run instead of a suite or of several workloads
 QUICK_SUITE = [f"{scene}_{shader}" for scene in ("WKND", "SHIP", "REF") for shader in ("PT", "SH", "AO")]
