@@ -48,6 +48,7 @@ Address LaunchBuilder::allocate(std::string name, uint64_t bytes) {
 void LaunchBuilder::bind_buffers(BindingPlace place, const std::vector<BufferRange>& elements) {
   static_assert(sizeof(BufferRange) == isa::kDescriptorBytes);
   const frontend::Binding* use = shaders_.declared_at(place);
+  if (noted_) noted_->push_back({place, elements});
   if (elements.empty()) return;
   if (!use || !use->is_array) return write(place, elements[0].address, elements[0].bytes);
   std::vector<BufferRange> all = elements;
@@ -60,6 +61,7 @@ void LaunchBuilder::bind_buffers(BindingPlace place, const std::vector<BufferRan
 
 void LaunchBuilder::bind_images(BindingPlace place, std::vector<exec::ImageView> elements) {
   const size_t count = elements.size();
+  if (noted_) noted_->push_back({place, elements});
   write(place, world.num_images(), count);
   append(world.images, std::move(elements));
   mark_rest_unbound(world, shaders_.declared_at(place), count);
@@ -67,6 +69,7 @@ void LaunchBuilder::bind_images(BindingPlace place, std::vector<exec::ImageView>
 
 void LaunchBuilder::bind_samplers(BindingPlace place, std::vector<exec::Sampler> elements) {
   const size_t count = elements.size();
+  if (noted_) noted_->push_back({place, elements});
   write(place, world.num_samplers(), count);
   append(world.samplers, std::move(elements));
   mark_rest_unbound(world, shaders_.declared_at(place), count);

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -20,6 +21,12 @@ namespace glint::pipeline {
 struct BufferRange {
   Address address = 0;
   uint64_t bytes = 0;
+};
+
+// Is what a launch was given for one binding.
+struct BoundResources {
+  BindingPlace place;
+  std::variant<std::vector<BufferRange>, std::vector<exec::ImageView>, std::vector<exec::Sampler>> elements;
 };
 
 // Pipeline files, Amber scripts and the Vulkan driver build their launches with this class:
@@ -59,6 +66,8 @@ class LaunchBuilder {
   void bind_buffers(BindingPlace place, const std::vector<BufferRange>& elements);
   void bind_images(BindingPlace place, std::vector<exec::ImageView> elements);
   void bind_samplers(BindingPlace place, std::vector<exec::Sampler> elements);
+  // Lets the functions above note what they bind, in their order. A capsule is made of it.
+  void note_bindings(std::vector<BoundResources>& into) { noted_ = &into; }
   // Bind what stands elsewhere already: a table of `count` descriptors at `table`, for a binding that the
   // shaders declare as an array, or consecutive images or samplers of the pool from number `first` on.
   void bind_table(BindingPlace place, Address table, uint64_t count);
@@ -93,6 +102,7 @@ class LaunchBuilder {
   mem::AddressSpace& memory_;
   std::set<BindingPlace> bound_;
   std::vector<Address> allocations_;
+  std::vector<BoundResources>* noted_ = nullptr;
 };
 
 }  // namespace glint::pipeline

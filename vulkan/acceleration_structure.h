@@ -3,10 +3,12 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/types.h"
+#include "pipeline/capsule/capsule.h"
 #include "rtunit/structure/build.h"
 #include "vulkan/handles.h"
 #include "vulkan/memory.h"
@@ -18,6 +20,9 @@ struct VkAccelerationStructureKHR_T {
   VkDeviceSize offset = 0;        // in the buffer
   VkDeviceSize bytes = 0;         // that the application has given to it
   VkDeviceSize update_bytes = 0;  // that an update may need; 0: it was built without updates
+  // What it was built from, if launches are saved; null: nobody knows.
+  std::shared_ptr<const glint::pipeline::StructureInputs> inputs;
+  uint64_t built = 0;  // The larger, the later it was built.
 };
 
 namespace glint::vulkan {

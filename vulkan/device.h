@@ -57,6 +57,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
     glint::Cycle cycles = 0;  // of those that were timed
   } launches;
   uint64_t frames = 0;   // that were presented
+  uint64_t builds = 0;   // of acceleration structures
   bool is_lost = false;  // A launch did something that ends the device.
   VkQueue_T queue{*this};
 };

@@ -47,7 +47,7 @@ PictureChoice PictureChoice::parse(const std::string& text, const std::string& v
 void present(Device& device, const std::vector<VkImage>& images) {
   const uint64_t frame = device.frames++;
   const PictureChoice& choice = device.physical.instance.settings.pictures;
-  const bool is_shown = choice.keeps_last() || choice.takes(frame);
+  const bool is_shown = device.recording.is_on() && (choice.keeps_last() || choice.takes(frame));
   std::vector<ShownImage> all;
   for (const VkImage each : images)
     if (is_shown) all.push_back(shown(device, *each));

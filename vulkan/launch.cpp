@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "exec/print_log.h"
+#include "pipeline/capsule/save_memory.h"
 #include "pipeline/launch_builder.h"
 #include "vulkan/bound_descriptors.h"
 #include "vulkan/device.h"
@@ -37,14 +40,47 @@ class Allocations {
   const pipeline::LaunchBuilder& builder_;
 };
 
+// Describes a launch but for its size and its memory.
+void begin_capsule(pipeline::Capsule& capsule, Device& device, const Bindings& bound,
+                   const exec::World& world) {
+  const std::vector<isa::Program>& programs = world.image->programs;
+  BindingNumbers numbers = bound.pipeline->binding_numbers();
+  for (size_t i = 0; i < bound.pipeline->stages.size(); ++i) {
+    const PipelineStage& each = bound.pipeline->stages[i];
+    capsule.stages.push_back({each.name, each.entry_point, uint32_t(programs.at(i).stage), each.constants,
+                              numbers.changed(*each.words)});
+  }
+  capsule.push_constants.assign(bound.push_constants.begin(), bound.push_constants.end());
+  capsule.robust_buffers = world.robust_buffers, capsule.robust_images = world.robust_images;
+  capsule.structure_format = pipeline::structure_format(device.physical.gpu.bvh);
+  capsule.stack_need = stack_need(device);
+  std::map<Address, const Structure*> newest;  // Several structures may have been built at one address.
+  for (const Structure* const each : device.structures) {
+    const Structure*& kept = newest[each->address];
+    if (each->built && (!kept || kept->built < each->built)) kept = each;
+  }
+  for (const auto& [address, each] : newest)
+    if (each) capsule.structures.push_back({each->name, address, each->bytes, each->inputs});
+}
+
 // Sets up what all launches of a pipeline have, lets `set_size(builder)` do the rest, and runs the launch. It
-// runs nothing when set_size() returns false.
-template <class SetSize>
-void launch_with(Queue& queue, const Bindings& bound, const LaunchOf& launch, SetSize&& set_size) {
+// runs nothing when set_size() returns false. `describe(capsule)` tells a launch that is saved what
+// set_size() has set.
+template <class SetSize, class Describe>
+void launch_with(Queue& queue, const Bindings& bound, LaunchOf launch, SetSize&& set_size,
+                 Describe&& describe) {
   Device& device = queue.device;
   const pipeline::LinkedShaders& shaders = bound.pipeline->compiled(device);
   pipeline::LaunchBuilder builder(shaders, device.memory);
   const Allocations allocations(device, builder);
+  pipeline::Capsule capsule;
+  if (!device.physical.instance.settings.save.is_empty()) builder.note_bindings(capsule.bindings);
+  launch.save = [&] {
+    begin_capsule(capsule, device, bound, builder.world);
+    describe(capsule);
+    pipeline::save_memory(capsule, device.memory, builder.allocations());
+    return std::move(capsule);
+  };
   for (const auto& [place, use] : shaders.declared()) bind(device, builder, bound, use);
   builder.set_push_constants(bound.push_constants);
   exec::PrintLog prints;
@@ -63,11 +99,13 @@ void launch(Queue& queue, const Bindings& bound, const std::array<uint32_t, 3>& 
             const std::array<uint32_t, 3>& groups) {
   if (!groups[0] || !groups[1] || !groups[2]) return;
   const LaunchOf what{"dispatch", {groups[0], groups[1], groups[2]}, *bound.pipeline};
-  launch_with(queue, bound, what, [&](pipeline::LaunchBuilder& builder) {
+  const auto set_size = [&](pipeline::LaunchBuilder& builder) {
     builder.set_blocks(0, groups, {bound.pipeline->name, 0, 0});
     exec::set_first_block(builder.world, base);
     return true;
-  });
+  };
+  launch_with(queue, bound, what, set_size,
+              [&](pipeline::Capsule& capsule) { capsule.size = groups, capsule.base = base; });
 }
 
 namespace {
@@ -115,10 +153,11 @@ void launch_rays(Queue& queue, const Bindings& bound, pipeline::DeviceTable tabl
   for (pipeline::DeviceRegion* const each : {&table.miss, &table.hit, &table.callable})
     cut_to_memory(queue.device.memory, *each);
   const LaunchOf what{"trace", {size[0], size[1], size[2]}, *bound.pipeline};
-  launch_with(queue, bound, what, [&](pipeline::LaunchBuilder& builder) {
+  uint32_t depth = 0;
+  const auto set_size = [&](pipeline::LaunchBuilder& builder) {
     // Vulkan's default stack has room for two callables, one in the other. More may be called as long as the
     // stack has room.
-    const uint32_t depth = trace_depth(queue.device, *bound.pipeline, *builder.world.image);
+    depth = trace_depth(queue.device, *bound.pipeline, *builder.world.image);
     builder.set_rays(size, depth, kDefaultCallableDepth, {bound.pipeline->name, 0, 0});
     builder.world.max_callable_depth = kMaxCallableDepth;
     builder.world.added_ray_flags = rays.added_ray_flags;
@@ -135,6 +174,15 @@ void launch_rays(Queue& queue, const Bindings& bound, pipeline::DeviceTable tabl
       return false;
     }
     return true;
+  };
+  launch_with(queue, bound, what, set_size, [&](pipeline::Capsule& capsule) {
+    capsule.size = size;
+    pipeline::Capsule::Rays& to = capsule.rays.emplace();
+    to.groups = rays.groups, to.pipeline = rays.pipeline, to.table = table;
+    to.max_trace_depth = depth, to.default_callable_depth = kDefaultCallableDepth;
+    to.max_callable_depth = kMaxCallableDepth;
+    to.added_flags = rays.added_ray_flags;
+    if (rays.has_dynamic_stack) to.stack_bytes = bound.stack_bytes;
   });
 }
 

@@ -92,7 +92,9 @@ void set_universal_limits(VkPhysicalDeviceLimits& l) {
   l.maxColorAttachments = l.maxFragmentOutputAttachments = 8;
   l.maxFragmentCombinedOutputResources = 32;
   l.maxVertexOutputComponents = l.maxFragmentInputComponents = 128;
-  l.maxDrawIndexedIndexValue = 0xffff'ffff;
+  l.maxDrawIndexedIndexValue = 0xffff'ffff, l.maxDrawIndirectCount = 1 << 16;
+  l.maxSamplerAnisotropy = 16.0f;  // Choice: sampling stays isotropic, as Vulkan allows.
+  l.lineWidthRange[1] = 8.0f, l.lineWidthGranularity = 1.0f;
   l.maxGeometryShaderInvocations = 32, l.maxGeometryOutputVertices = 256;
   l.maxGeometryInputComponents = l.maxGeometryOutputComponents = 64;
   l.maxGeometryTotalOutputComponents = 1024;

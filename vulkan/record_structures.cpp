@@ -30,6 +30,7 @@ void copy(Device& device, Structure* from, Structure* to) {
                               to->name, to->bytes));
   rt::copy_structure(device.memory, from->address, to->address);
   to->update_bytes = from->update_bytes;
+  to->inputs = from->inputs, to->built = ++device.builds;
   device.clock.add_transfer(info ? info->bytes : 0);
 }
 
@@ -70,6 +71,7 @@ void deserialize(Device& device, std::span<const std::byte> from, Structure* to)
                               header.bytes, to->name, to->bytes));
   rt::deserialize(device.memory, from, to->address);
   to->update_bytes = 0;
+  to->inputs = nullptr, to->built = ++device.builds;
 }
 
 // An updatable structure keeps the room that an update may need when it is compacted.

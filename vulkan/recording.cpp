@@ -14,6 +14,7 @@
 #include "base/diagnostics.h"
 #include "report/files/run_directory.h"
 #include "report/picture/image_compare.h"
+#include "setup/capsule_file.h"
 #include "setup/observation_files.h"
 #include "setup/recorded_launch.h"
 #include "vulkan/guard.h"
@@ -88,7 +89,8 @@ Recording::Recording(const Settings& settings, const Messages& messages, DeviceC
     : settings_(settings),
       messages_(messages),
       clock_(clock),
-      is_on_(!settings.out.empty() || !settings.timing.is_empty() || settings.asks_for_pictures) {
+      is_on_(!settings.out.empty() || !settings.timing.is_empty() || settings.asks_for_pictures ||
+             !settings.save.is_empty()) {
   if (!is_on_) return;
   const report::RunInfo info = setup::new_run_info(settings.gpu, settings.preset, "timing");
   facts_.command = command_of_process();
@@ -211,6 +213,19 @@ void Recording::add_refusal(const std::string& command, const std::string& why) 
     ++same->count;
   else if (all.size() < kMostRefusals)
     all.push_back({command, why, 1});
+}
+
+void Recording::add_capsule(const pipeline::Capsule& capsule) {
+  const std::lock_guard lock(mutex_);
+  if (!begin()) return;
+  const std::string path =
+      fmt::format("{}/launch-{}-{}{}", folder_, capsule.number, capsule.kind, setup::kCapsuleEnding);
+  try {
+    report::write_file(path, setup::capsule_bytes(capsule));
+    messages_.info(fmt::format("{} {} is saved: glint run {}", capsule.kind, capsule.number, path));
+  } catch (const Error& error) {
+    fail(error.what());
+  }
 }
 
 bool Recording::add_dropped(const std::string& what, const std::string& why) {

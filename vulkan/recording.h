@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/capsule/capsule.h"
 #include "pipeline/render.h"
 #include "report/files/application_index.h"
 #include "vulkan/clock.h"
@@ -51,6 +52,8 @@ class Recording {
   void add(report::DeviceCommand command);
   // Adds a frame of `size` pixels that was presented, and writes its pictures as PNG: one for each image.
   void add_frame(uint64_t number, VkExtent2D size, std::vector<ShownImage> images);
+  // Writes a launch that can run again alone.
+  void add_capsule(const pipeline::Capsule& capsule);
   // Notes a call that failed. Any thread may call it.
   void add_refusal(const std::string& command, const std::string& why);
   // Counts what the device drops. Returns whether it is the first of its kind.
@@ -59,6 +62,8 @@ class Recording {
   void tell_progress(const report::DeviceCommand& command, const pipeline::LaunchProgress& progress);
   // Writes the index as that of an application that has ended.
   void finish();
+  // Returns whether anything that happens is recorded.
+  bool is_on() const { return is_on_; }
   // Returns the application's folder, or "" when there is none.
   std::string folder() const { return folder_; }
 

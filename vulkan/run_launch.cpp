@@ -6,12 +6,14 @@
 #include <exception>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "pipeline/render.h"
 #include "report/files/config_file.h"
 #include "vulkan/device.h"
+#include "vulkan/process.h"
 
 namespace glint::vulkan {
 namespace {
@@ -43,9 +45,21 @@ class Launching {
     const Settings& settings = device_.physical.instance.settings;
     mode_.timing = settings.timing.takes(facts), mode_.threads = settings.threads;
     if (mode_.timing) mode_.observe = settings.observe;
+    if (settings.save.takes(facts)) capsule_ = launch.save();
   }
 
   void run() {
+    try {
+      run_unsaved();
+    } catch (...) {
+      save();
+      throw;
+    }
+    save();
+  }
+
+ private:
+  void run_unsaved() {
     if (mode_.timing) return run_timed();
     try {
       const pipeline::RenderResult result = device_.gpu.run(world_, mode_, {});
@@ -60,7 +74,16 @@ class Launching {
     device_.recording.add(command_);
   }
 
- private:
+  void save() {
+    if (!capsule_) return;
+    capsule_->program = program_of_process(), capsule_->kind = command_.kind;
+    capsule_->shader = command_.shader, capsule_->label = command_.label;
+    capsule_->number = command_.number, capsule_->frame = command_.frame;
+    capsule_->hash = hash_of(launch_), capsule_->config = device_.physical.instance.settings.preset;
+    capsule_->cycles = command_.cycles;
+    device_.recording.add_capsule(*capsule_);
+  }
+
   void run_timed() {
     pipeline::LaunchWatch watch;
     watch.progress = [this](const pipeline::LaunchProgress& progress, const auto&) {
@@ -107,6 +130,7 @@ class Launching {
   exec::PrintLog& prints_;
   pipeline::LaunchMode mode_;
   report::DeviceCommand command_;
+  std::optional<pipeline::Capsule> capsule_;  // nothing: the launch is not saved
 };
 
 }  // namespace

@@ -4,10 +4,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "exec/executor.h"
 #include "exec/print_log.h"
+#include "pipeline/capsule/capsule.h"
 #include "vulkan/pipeline.h"
 #include "vulkan/queue.h"
 
@@ -18,6 +20,8 @@ struct LaunchOf {
   std::string kind;              // "dispatch" or "trace"
   std::array<uint64_t, 3> size;  // blocks of a dispatch, rays of a trace
   VkPipeline_T& pipeline;        // is launched once more
+  // Returns the launch with its memory, as it is before it runs.
+  std::function<pipeline::Capsule()> save = {};
 };
 
 // Runs a world. Says faults that were let pass, and what the shader printed. Throws as

@@ -17,6 +17,7 @@ struct Settings {
   pipeline::GpuParams gpu;                       // the preset, with the settings of GLINT_SET on top
   LaunchSelection timing;                        // GLINT_TIMING: the launches that the timing machine runs
   std::string timing_text;                       // the same as it was written
+  LaunchSelection save;                          // GLINT_VK_SAVE: the launches that become capsules
   std::string out;                               // GLINT_OUT: the folder of the application; "" for a name
   pipeline::Observation observe;                 // GLINT_OBSERVE: what to write of timed launches besides
   bool is_compact = false;                       // GLINT_STATS: "full" or "compact", as `glint run --stats`

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/device_geometry.h"
@@ -75,6 +77,11 @@ pipeline::DeviceBoxes boxes_of(const VkAccelerationStructureGeometryKHR& geometr
   return to;
 }
 
+// Returns whether what a structure is built from is kept, because launches are saved.
+bool keeps_inputs(const Device& device) {
+  return !device.physical.instance.settings.save.is_empty();
+}
+
 rt::EncodedStructure encode_bottom(Device& device, const BuildInput& input, std::vector<std::string>& notes) {
   pipeline::DeviceGeometry geometry =
       input.on_host ? pipeline::DeviceGeometry() : pipeline::DeviceGeometry(device.memory);
@@ -85,6 +92,7 @@ rt::EncodedStructure encode_bottom(Device& device, const BuildInput& input, std:
       geometry.add(boxes_of(input.geometries[i], input.ranges[i]));
   }
   notes = geometry.notes();
+  if (keeps_inputs(device)) input.to->inputs = pipeline::inputs_of(geometry.level());
   return rt::encode_bottom(input.to->name, geometry.level(), device.physical.gpu.bvh,
                            device.physical.instance.settings.threads);
 }
@@ -119,6 +127,16 @@ std::vector<rt::DeviceInstance> instances_of(const Device& device, const BuildIn
     notes.push_back(
         fmt::format("'{}': {} instances lie outside of memory and are inactive", input.to->name, unread));
   return out;
+}
+
+rt::EncodedStructure encode_top(Device& device, const BuildInput& input, std::vector<std::string>& notes) {
+  const std::vector<rt::DeviceInstance> instances = instances_of(device, input, notes);
+  if (keeps_inputs(device)) {
+    auto inputs = std::make_shared<pipeline::StructureInputs>();
+    inputs->is_top = true, inputs->instances = instances;
+    input.to->inputs = std::move(inputs);
+  }
+  return rt::encode_top(device.memory, input.to->name, instances, device.physical.gpu.bvh, notes);
 }
 
 // Choice: what is inactive is no fault. Applications hide instances by transforms without an inverse.
@@ -169,14 +187,13 @@ void build(Device& device, const BuildInput& input) {
   check_room(device, input);
   std::vector<std::string> notes;
   const rt::EncodedStructure made =
-      is_top(input) ? rt::encode_top(device.memory, input.to->name, instances_of(device, input, notes),
-                                     device.physical.gpu.bvh, notes)
-                    : encode_bottom(device, input, notes);
+      is_top(input) ? encode_top(device, input, notes) : encode_bottom(device, input, notes);
   say_notes(device, input.to->name, notes);
   if (made.bytes.size() > input.to->bytes)
     throw Refusal(fmt::format("the updated structure has {} bytes, and '{}' has room for {}",
                               made.bytes.size(), input.to->name, input.to->bytes));
   rt::write_structure(device.memory, made, input.to->address);
+  input.to->built = ++device.builds;
   input.to->update_bytes = input.allows_update ? most_bytes_of(device, input, primitives_of(input)) : 0;
 }
 

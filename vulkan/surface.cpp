@@ -7,6 +7,7 @@
 #include "vulkan/chain.h"
 #include "vulkan/device.h"
 #include "vulkan/image.h"
+#include "vulkan/swapchain.h"
 #include "vulkan/x_window.h"
 
 namespace glint::vulkan {
@@ -62,6 +63,7 @@ VkResult CreateXlibSurfaceKHR(Instance&, const VkXlibSurfaceCreateInfoKHR* info,
   return VK_SUCCESS;
 }
 void DestroySurfaceKHR(Instance&, VkSurfaceKHR surface) {
+  if (surface && surface->swapchain) surface->swapchain->is_retired = true;
   delete surface;
 }
 

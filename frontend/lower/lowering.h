@@ -30,9 +30,9 @@ VirtualProgram lower_to_virtual(const std::vector<uint32_t>& spirv, const std::s
                                 const std::string& entry_point = {}, bool contract = false,
                                 bool reorders = false);
 
-// Says what memory a pointer points into. An AttributePair is hit attributes of two floats, which hit shaders
-// find in %hit.u and %hit.v. A Resource is a descriptor; a buffer is one only while the index into an array
-// of descriptors is missing. A Texel is a texel of a storage image, for atomics.
+// Says what memory a pointer points into. An AttributePair is hit attributes of two or three floats, of which
+// hit shaders find the first two in %hit.u and %hit.v. A Resource is a descriptor; a buffer is one only while
+// the index into an array of descriptors is missing. A Texel is a texel of a storage image, for atomics.
 enum class PointerSpace : uint8_t {
   Local,
   Global,

@@ -121,8 +121,14 @@ Operands ModuleLowering::load(const Pointer& pointer) {
       return slice(*this, pointer,
                    load_builtin(*decorations(variable.id).builtin, module_.type(variable.type).element));
     }
-    case PointerSpace::AttributePair:
-      return slice(*this, pointer, {Operand::of(isa::Special::HitU), Operand::of(isa::Special::HitV)});
+    case PointerSpace::AttributePair: {
+      const Id type = module_.type(module_.variables.at(pointer.variable).type).element;
+      Operands all{Operand::of(isa::Special::HitU), Operand::of(isa::Special::HitV)};
+      for (size_t i = all.size(); i < size_t(layout_.num_parts(type)); ++i)
+        all.push_back(emitter_.load("ld.local.b32", Operand::of(isa::Special::Attribute), int32_t(4 * i), 1,
+                                    version_of(PointerSpace::Local))[0]);
+      return slice(*this, pointer, all);
+    }
     case PointerSpace::Resource:
       return load_resource(*this, pointer);
     case PointerSpace::Texel:

@@ -49,7 +49,11 @@ Pointer ModuleLowering::interface_pointer(const Variable& variable, Pointer p) {
     return p;
   }
   if (variable.storage == Storage::HitAttributeKHR) {
-    const bool is_pair = layout_.parts(p.type) == std::vector<Part>{Part::Float32, Part::Float32};
+    // Choice: a triangle's weights also reach shaders that declare three floats, as on hardware.
+    const std::vector<Part> parts = layout_.parts(p.type);
+    const bool is_pair =
+        parts.size() >= 2 && parts.size() <= 3 &&
+        std::all_of(parts.begin(), parts.end(), [](Part part) { return part == Part::Float32; });
     p.space =
         is_pair && stage() != isa::Stage::Intersection ? PointerSpace::AttributePair : PointerSpace::Local;
     p.base = attributes_in_frame_ ? Operand::stack_pointer() : Operand::of(isa::Special::Attribute);

@@ -137,6 +137,21 @@ TEST_CASE("a closest-hit shader fetches the corners of its triangle", "[rays]") 
   CHECK(found == std::vector<uint32_t>{121, 105, 121, 105, 105, 121, 105, 105});
 }
 
+// Old compilers wrote so, and GPUs take it.
+TEST_CASE("weights of a triangle reach a shader whose attributes have a third float", "[portable][rays]") {
+  if (!RayClient::is_possible()) return;
+  RayPipelineClient client;
+  const Scene scene(client);
+  std::vector<RayShader> shaders = kSixStages;
+  shaders[2].glsl = kHead +
+                    "layout(location = 0) rayPayloadInEXT uint value;\nhitAttributeEXT vec3 weights;\n"
+                    "void main() { value = uint(round(100 * (weights.x + weights.y))); }\n";
+  const VkPipeline pipeline = client.ray_pipeline({shaders, kGroups, {}});
+  const RayTable table = client.table(pipeline, 0, {1}, {2, 3}, {4});
+  REQUIRE(client.trace(pipeline, scene.set, table, {8, 1, 1}) == VK_SUCCESS);
+  CHECK(scene.take()[0] % 100 == 70);  // The ray meets the first square at (0.4, 0.3).
+}
+
 TEST_CASE("a ray generation shader keeps hit objects, reorders by them and runs their shaders", "[rays]") {
   RayPipelineClient client;
   const Scene scene(client);

@@ -12,12 +12,12 @@
 namespace glint::test {
 namespace {
 
-constexpr VkExtent2D kSize{40, 24};
+constexpr VkExtent2D kScreenSize{40, 24};
 constexpr uint64_t kForever = ~uint64_t{0};
 
 // Is a client with a surface and a swapchain on it.
 struct Screen {
-  explicit Screen(VkExtent2D extent = kSize, const char* kind = VK_EXT_HEADLESS_SURFACE_EXTENSION_NAME,
+  explicit Screen(VkExtent2D extent = kScreenSize, const char* kind = VK_EXT_HEADLESS_SURFACE_EXTENSION_NAME,
                   const std::function<VkSurfaceKHR(VkInstance)>& on = headless)
       : client({.extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME},
                 .instance_extensions = {VK_KHR_SURFACE_EXTENSION_NAME, kind}}),
@@ -161,7 +161,7 @@ TEST_CASE("a swapchain that another one replaced is out of date, and a surface h
   Screen screen;
   const uint32_t image = screen.acquire();
   const VkSwapchainKHR old = screen.chain;
-  CHECK(screen.swapchain(kSize) == nullptr);
+  CHECK(screen.swapchain(kScreenSize) == nullptr);
   CHECK(screen.result == VK_ERROR_NATIVE_WINDOW_IN_USE_KHR);
   const VkSwapchainKHR next = screen.swapchain({8, 8}, old);
   REQUIRE(next);
@@ -219,7 +219,7 @@ VkRenderPass clearing_pass(Client& client) {
   return out;
 }
 
-VkImageView view_of(Client& client, VkImage image) {
+VkImageView colour_view_of(Client& client, VkImage image) {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, info.image = image;
   info.viewType = VK_IMAGE_VIEW_TYPE_2D, info.format = VK_FORMAT_B8G8R8A8_UNORM;
@@ -237,9 +237,16 @@ TEST_CASE("a pass that clears to blue, clears a part to green, and draws in vain
   const uint32_t image = screen.acquire();
   const VkRenderPass pass = clearing_pass(client);
   const VkPipeline pipeline = graphics_pipeline(client, pass);
-  const VkImageView view = view_of(client, screen.images[image]);
-  VkFramebufferCreateInfo framebuffer{
-      VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO, nullptr, 0, pass, 1, &view, kSize.width, kSize.height, 1};
+  const VkImageView view = colour_view_of(client, screen.images[image]);
+  VkFramebufferCreateInfo framebuffer{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
+                                      nullptr,
+                                      0,
+                                      pass,
+                                      1,
+                                      &view,
+                                      kScreenSize.width,
+                                      kScreenSize.height,
+                                      1};
   VkFramebuffer target = nullptr;
   check(vkCreateFramebuffer(client.device, &framebuffer, nullptr, &target), "vkCreateFramebuffer");
   client.at_end([&client, target] { vkDestroyFramebuffer(client.device, target, nullptr); });
@@ -247,9 +254,9 @@ TEST_CASE("a pass that clears to blue, clears a part to green, and draws in vain
   VkClearValue blue{}, green{};
   blue.color = {{0, 0, 1, 1}}, green.color = {{0, 1, 0, 1}};
   const VkRenderPassBeginInfo begin{
-      VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO, nullptr, pass, target, {{}, kSize}, 1, &blue};
+      VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO, nullptr, pass, target, {{}, kScreenSize}, 1, &blue};
   const VkClearAttachment part{VK_IMAGE_ASPECT_COLOR_BIT, 0, green};
-  const VkClearRect where{{{0, 4}, {kSize.width, 4}}, 0, 1};
+  const VkClearRect where{{{0, 4}, {kScreenSize.width, 4}}, 0, 1};
   REQUIRE(client.run([&](VkCommandBuffer commands) {
     vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     vkCmdClearAttachments(commands, 1, &part, 1, &where);

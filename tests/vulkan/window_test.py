@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: window_test.py MANIFEST SOURCE_DIR CLIENT GLINT"""
 import json
+import os
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
+import unittest
 import zlib
 
 import vulkan_case
@@ -99,6 +102,25 @@ class Window(VulkanTest):
         index = json.loads((self.folder / "drawn/index.json").read_text())
         self.assertEqual([(each["what"], each["count"]) for each in index["dropped"]], [("draws with graphics pipeline 1", 2)])
         self.assertEqual(index["commands"][-1]["dropped"], 2)
+
+    @unittest.skipUnless(shutil.which("Xvfb") and shutil.which("vkcube"), "SKIPPED: Xvfb or vkcube is not installed (packages xvfb, vulkan-tools)")
+    def test_a_window_of_x_gives_its_size(self):
+        read, write = os.pipe()
+        with subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24"], pass_fds=[write],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:
+            os.close(write)
+            try:
+                with os.fdopen(read) as lines:
+                    display = lines.readline().strip()  # The server writes it when it is ready.
+                result = self.run_on_glint("vkcube", "--c", "3", "--suppress_popups", DISPLAY=f":{display}", GLINT_OUT="cube",
+                                           GLINT_VK_QUEUE="universal")
+            finally:
+                server.terminate()
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        index = json.loads((self.folder / "cube/index.json").read_text())
+        presents = [each for each in index["commands"] if each["kind"] == "present"]
+        self.assertEqual([(each["size"], each["dropped"]) for each in presents], [([500, 500], 1)] * 3)
+        self.assertEqual(pixels(self.folder / "cube/present-last.png"), (500, 500, {(51, 51, 51)}))  # It clears to grey.
 
     def test_a_wrong_choice_is_refused_by_name(self):
         for name, value in (("GLINT_VK_PRESENT", "some"), ("GLINT_VK_PRESENT", "frame x"), ("GLINT_TIMING", "frame 3-1")):

@@ -9,6 +9,7 @@
 #include "apps/glint/options/frame_options.h"
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/amber.h"
+#include "apps/glint/run/capsule.h"
 #include "apps/glint/run/compute.h"
 #include "apps/glint/run/pipeline.h"
 #include "apps/glint/run/ptx.h"
@@ -30,11 +31,12 @@ struct RunOptions {
 // Refuses options that only scenes understand.
 void check_scene_options(const RunOptions& options) {
   const std::string &what = options.scene.scene, option = options.scene.given();
-  if (option.empty() ||
-      (!names_script(what) && !names_pipeline(what) && !names_kernel(what) && !names_program(what)))
+  if (option.empty() || (!names_script(what) && !names_pipeline(what) && !names_kernel(what) &&
+                         !names_program(what) && !names_capsule(what)))
     return;
   throw UserError({}, fmt::format("{} belongs to scenes, and '{}' is none", option, what),
                   option == "--exr" ? "a pipeline keeps a picture with save = \"NAME.exr\" under [[image]]"
+                  : names_capsule(what) ? "a capsule has all that its launch needs"
                   : names_program(what) ? "its input is the full one, or the small one with --small"
                                         : "what a pipeline, a kernel or a script renders stands in its file");
 }
@@ -63,6 +65,7 @@ Exit run(const Session& session, const RunOptions& options) {
   if (options.small)
     throw UserError({}, fmt::format("--small belongs to compute programs, and '{}' is none", what),
                     "'glint list programs' names them");
+  if (names_capsule(what)) return run_capsule(session, what, options.launch);
   if (names_pipeline(what)) return run_pipeline(session, what, options.launch);
   if (names_kernel(what)) return run_ptx(session, what, options.kernel_launch, options.launch);
   return run_scene(session, options.scene, options.launch);
@@ -74,7 +77,8 @@ void add_scene_options(Command command, RunOptions& options) {
                   "What to run: a scene ('glint list scenes' names them), a workload (SHIP_SH), a scene of "
                   "your own (FILE.obj, FILE.gltf, FILE.glb), a compute program ('glint list programs' names "
                   "them), a pipeline (FILE.toml, or one shader file), a "
-                  "kernel (FILE.ptx, or its launch FILE.toml) or an Amber script (FILE.amber)")
+                  "kernel (FILE.ptx, or its launch FILE.toml), a launch that the Vulkan driver has saved "
+                  "(FILE.capsule) or an Amber script (FILE.amber)")
       .required();
   command.add_option("MORE", options.more, "More Amber scripts to run after the first one");
   command

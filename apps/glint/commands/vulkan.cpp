@@ -19,6 +19,27 @@ std::vector<std::string> program_of(const Session& session, const std::vector<st
   return mark == session.arguments.end() ? parsed : std::vector(mark + 1, session.arguments.end());
 }
 
+// Adds what the driver does besides running launches.
+void add_driver_options(Command command, VulkanProgram& options) {
+  command
+      .add_option(
+          "--queue", options.queue,
+          "Selects what the device says of its queue: universal pretends to have graphics, for programs "
+          "that want it and then only compute")
+      .one_of({"compute", "universal"})
+      .capture_default_str();
+  command
+      .add_option("--present", options.present,
+                  "Selects the presented frames that are written as PNG: all, last, none or 'frame 0,7-9'")
+      .type_name("FRAMES")
+      .capture_default_str();
+  command
+      .add_option("--save", options.save,
+                  "Launches to save as capsules, which 'glint run' runs again on any machine; chosen as "
+                  "for --timing (default: none)")
+      .type_name("CHOICE");
+}
+
 }  // namespace
 
 void add_vulkan(Command app, Session& session) {
@@ -52,18 +73,7 @@ void add_vulkan(Command app, Session& session) {
           "loses the device at the first fault")
       .one_of({"warn", "stop"})
       .capture_default_str();
-  command
-      .add_option(
-          "--queue", options->queue,
-          "Selects what the device says of its queue: universal pretends to have graphics, for programs "
-          "that want it and then only compute")
-      .one_of({"compute", "universal"})
-      .capture_default_str();
-  command
-      .add_option("--present", options->present,
-                  "Selects the presented frames that are written as PNG: all, last, none or 'frame 0,7-9'")
-      .type_name("FRAMES")
-      .capture_default_str();
+  add_driver_options(command, *options);
   command.add_option("--threads", options->threads, "Number of host threads, which does not change results")
       .in_range(1u, 256u)
       .capture_default_str();

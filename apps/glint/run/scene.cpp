@@ -47,7 +47,7 @@ void refuse_file(const std::string& what) {
       : ending.empty() ? "this file has no ending that says what it is"
                        : fmt::format("Glint does not run files that end in {}", ending),
       "it runs scenes (.obj, .gltf, .glb), shaders (.rgen, .comp, .spv, .spvasm), pipelines (.toml), "
-      "kernels (.ptx), Amber scripts (.amber) and the scenes of 'glint list scenes'");
+      "kernels (.ptx), capsules (.capsule), Amber scripts (.amber) and the scenes of 'glint list scenes'");
 }
 
 pipeline::RenderJob make_job(const Session& session, const SceneOptions& options,

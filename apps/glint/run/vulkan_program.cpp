@@ -69,6 +69,7 @@ Variables variables_of(const VulkanProgram& program, const std::string& folder) 
   return {{"VK_DRIVER_FILES", driver},
           {"VK_ICD_FILENAMES", driver},  // the same for loaders before 1.3.207
           {"GLINT_TIMING", program.timing},
+          {"GLINT_VK_SAVE", program.save},
           {"GLINT_CONFIG", program.config},
           {"GLINT_SET", fmt::format("{}", fmt::join(program.settings, " "))},
           {"GLINT_OUT", fs::absolute(folder).lexically_normal().string()},

@@ -10,9 +10,9 @@
 namespace glint::app {
 
 struct VulkanProgram {
-  std::vector<std::string> command;   // the program and its arguments
-  std::string timing, config, out;    // as GLINT_TIMING, GLINT_CONFIG and GLINT_OUT take them
-  std::vector<std::string> settings;  // keys on top of the configuration
+  std::vector<std::string> command;       // the program and its arguments
+  std::string timing, save, config, out;  // as GLINT_TIMING, GLINT_VK_SAVE and so on take them
+  std::vector<std::string> settings;      // keys on top of the configuration
   std::string on_fault = "warn", queue = "compute", stats = "full", present = "last";
   uint32_t threads = 1;
   bool profile = false, heat = false, trace = false;
