@@ -103,7 +103,7 @@ void fill_ray_specials(const World& world, WarpContext& warp, int lane, const Sh
   out.set(Special::HitGeometry, seen.hit.geometry);
   out.set(Special::HitInstance, seen.hit.instance);
   out.set(Special::HitCustomIndex, seen.hit.custom_index);
-  out.set(Special::RayFlags, state.ray.flags);
+  out.set(Special::RayFlags, own_flags(world, state.ray.flags));
   out.set_float(Special::RayTmin, state.ray.t_min);
   out.set(Special::RayCullMask, state.ray.cull_mask);
   out.set_floats(Special::RayOriginX, state.ray.origin.data(), 3);

@@ -99,7 +99,7 @@ bool Rays::trace(WarpContext& warp, const isa::Inst& inst) {
     const int lane = std::countr_zero(lanes);
     rt::RayState& state = frame.ray[size_t(lane)];
     set_ray(warp.regs, inst, lane, state.ray);
-    state.ray.flags |= world_.added_ray_flags;
+    state.ray.flags = with_added_flags(world_, state.ray.flags);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
     state.filter = world_.filter.get();
     state.table = candidates_.table_of(frame, lane);

@@ -13,10 +13,11 @@
 
 namespace glint::pipeline {
 
-KernelWorld::KernelWorld(frontend::Kernel kernel) : kernel_(std::move(kernel)) {
+KernelWorld::KernelWorld(frontend::Kernel kernel, std::shared_ptr<mem::AddressSpace> memory)
+    : kernel_(std::move(kernel)), memory_(std::move(memory)) {
   image = exec::link({kernel_.program});
   world.image = &image;
-  world.memory = &memory_;
+  world.memory = memory_.get();
   world.raygen = 0;
   world.local_bytes = kernel_.program.local_bytes;
   world.constant_bank.resize(kernel_.constant_bank_bytes);
@@ -31,9 +32,9 @@ void KernelWorld::place_variables() {
       address[v.name] = isa::window_of(isa::Space::Const) + v.offset;
       data[v.name] = world.constant_bank.data() + v.offset;
     } else {
-      const Address at = memory_.allocate(v.name, std::max<uint64_t>(v.bytes, 1));
+      const Address at = memory_->allocate(v.name, std::max<uint64_t>(v.bytes, 1));
       address[v.name] = at;
-      data[v.name] = memory_.find(at, v.bytes);
+      data[v.name] = memory_->find(at, v.bytes);
       std::memcpy(world.constant_bank.data() + v.offset, &at, sizeof at);
     }
     if (!v.initial.empty()) std::memcpy(data[v.name], v.initial.data(), v.initial.size());

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "exec/image.h"
@@ -22,14 +23,15 @@ struct KernelGrid {
 // Holds memory and world of a kernel. It cannot be moved, because `world` points into it.
 class KernelWorld {
  public:
-  // Links the kernel and puts its module's variables into memory.
-  explicit KernelWorld(frontend::Kernel kernel);
+  // Links the kernel and puts its module's variables into `memory`, which several kernels may share.
+  explicit KernelWorld(frontend::Kernel kernel,
+                       std::shared_ptr<mem::AddressSpace> memory = std::make_shared<mem::AddressSpace>());
   KernelWorld(const KernelWorld&) = delete;
   KernelWorld& operator=(const KernelWorld&) = delete;
 
   exec::World world;  // ready after set_grid and set_arguments
   exec::Image image;
-  mem::AddressSpace& memory() { return memory_; }
+  mem::AddressSpace& memory() { return *memory_; }
   const frontend::Kernel& kernel() const { return kernel_; }
 
   // Sets the grid. Throws UserError when the kernel cannot run with blocks of that size.
@@ -48,7 +50,7 @@ class KernelWorld {
   void place_variables();
 
   frontend::Kernel kernel_;
-  mem::AddressSpace memory_;
+  std::shared_ptr<mem::AddressSpace> memory_;
 };
 
 }  // namespace glint::pipeline

@@ -80,6 +80,7 @@ VkFormatFeatureFlags2 image_features_of(VkFormat format) {
   VkFormatFeatureFlags2 out = kTransfer | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT |
                               VK_FORMAT_FEATURE_2_BLIT_SRC_BIT | VK_FORMAT_FEATURE_2_BLIT_DST_BIT;
   if (is_depth(format)) return out | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
+  if (format == VK_FORMAT_S8_UINT) return out;
   if (!exec::is_integer(exec::info_of(*texels))) out |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
   if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT | kWithoutFormat;
   if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_IMAGE_ATOMIC_BIT;
@@ -90,7 +91,7 @@ VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
   const auto texels = format_of(format);
   const VkFormatFeatureFlags2 vertex =
       can_be_vertex(format, texels) ? VK_FORMAT_FEATURE_2_ACCELERATION_STRUCTURE_VERTEX_BUFFER_BIT_KHR : 0;
-  if (!texels || is_depth(format)) return vertex;
+  if (!texels || is_depth(format) || format == VK_FORMAT_S8_UINT) return vertex;
   VkFormatFeatureFlags2 out = vertex | VK_FORMAT_FEATURE_2_UNIFORM_TEXEL_BUFFER_BIT;
   if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_BIT | kWithoutFormat;
   if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_ATOMIC_BIT;
@@ -105,7 +106,8 @@ VkFormatFeatureFlags2 attachment_features_of(const PhysicalDevice& device, VkFor
     return device.instance.settings.is_universal ? VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT : 0;
   const auto texels = format_of(format);
   if (!texels) return 0;
-  if (is_depth(format)) return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if (is_depth(format) || format == VK_FORMAT_S8_UINT)
+    return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
   return VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BIT |
          (exec::is_integer(exec::info_of(*texels)) ? 0 : VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BLEND_BIT);
 }

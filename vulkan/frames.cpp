@@ -37,7 +37,7 @@ PictureChoice PictureChoice::parse(const std::string& text, const std::string& v
   else if (text == "all")
     out.all_ = true;
   else if (text.starts_with(kFrame))
-    out.frames_ = NumberList::parse(text.substr(kFrame.size()), variable);
+    out.frames_ = setup::NumberList::parse(text.substr(kFrame.size()), variable);
   else if (text != "none")
     throw UserError(
         fmt::format("{}: '{}' is none of 'all', 'last', 'none' and 'frame 0,7-9'", variable, text));

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "setup/launch_selection.h"
 #include "vulkan/handles.h"
-#include "vulkan/launch_selection.h"
 
 namespace glint::vulkan {
 
@@ -24,7 +24,7 @@ class PictureChoice {
 
  private:
   bool all_ = false, last_ = false;
-  NumberList frames_;
+  setup::NumberList frames_;
 };
 
 // Shows images together, and so ends a frame.

@@ -175,7 +175,9 @@ void CmdClearColorImage(CommandBuffer& commands, VkImage image, VkImageLayout, c
 void CmdClearDepthStencilImage(CommandBuffer& commands, VkImage image, VkImageLayout,
                                const VkClearDepthStencilValue* value, uint32_t count,
                                const VkImageSubresourceRange* ranges) {
-  record_clear(commands, image, {std::bit_cast<uint32_t>(value->depth), 0, 0, 0}, count, ranges);
+  const bool is_stencil = exec::is_integer(exec::info_of(image->whole.format));
+  record_clear(commands, image,
+               {is_stencil ? value->stencil : std::bit_cast<uint32_t>(value->depth), 0, 0, 0}, count, ranges);
 }
 
 }  // namespace glint::vulkan

@@ -40,8 +40,9 @@ class Launching {
     command_.number = device_.launches.all++;
     command_.label = fmt::format("{}", fmt::join(queue.labels, " / "));
     command_.begin = device_.clock.now(), command_.frame = device_.frames;
-    const LaunchFacts facts{launch.kind,          command_.number, command_.frame, launch.pipeline.launches++,
-                            launch.pipeline.name, queue.labels};
+    const setup::LaunchFacts facts{launch.kind,          command_.number,
+                                   command_.frame,       launch.pipeline.launches++,
+                                   launch.pipeline.name, queue.labels};
     const Settings& settings = device_.physical.instance.settings;
     mode_.timing = settings.timing.takes(facts), mode_.threads = settings.threads;
     if (mode_.timing) mode_.observe = settings.observe;

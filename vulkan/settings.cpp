@@ -105,8 +105,8 @@ Settings settings_of_environment() {
   Settings out;
   read_machine(out);
   out.timing_text = value_of("GLINT_TIMING");
-  out.timing = LaunchSelection::parse(out.timing_text, "GLINT_TIMING");
-  out.save = LaunchSelection::parse(value_of("GLINT_VK_SAVE"), "GLINT_VK_SAVE");
+  out.timing = setup::LaunchSelection::parse(out.timing_text, "GLINT_TIMING");
+  out.save = setup::LaunchSelection::parse(value_of("GLINT_VK_SAVE"), "GLINT_VK_SAVE");
   out.out = value_of("GLINT_OUT");
   out.observe = observation_of(value_of("GLINT_OBSERVE"));
   if (const std::string text = value_of("GLINT_STATS"); !text.empty()) out.is_compact = is_compact(text);

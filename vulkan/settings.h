@@ -7,17 +7,17 @@
 #include "exec/fault.h"
 #include "pipeline/params.h"
 #include "pipeline/run_profile.h"
+#include "setup/launch_selection.h"
 #include "vulkan/frames.h"
-#include "vulkan/launch_selection.h"
 
 namespace glint::vulkan {
 
 struct Settings {
   std::string preset;                            // GLINT_CONFIG: a preset ("mobile") or a file
   pipeline::GpuParams gpu;                       // the preset, with the settings of GLINT_SET on top
-  LaunchSelection timing;                        // GLINT_TIMING: the launches that the timing machine runs
+  setup::LaunchSelection timing;                 // GLINT_TIMING: the launches that the timing machine runs
   std::string timing_text;                       // the same as it was written
-  LaunchSelection save;                          // GLINT_VK_SAVE: the launches that become capsules
+  setup::LaunchSelection save;                   // GLINT_VK_SAVE: the launches that become capsules
   std::string out;                               // GLINT_OUT: the folder of the application; "" for a name
   pipeline::Observation observe;                 // GLINT_OBSERVE: what to write of timed launches besides
   bool is_compact = false;                       // GLINT_STATS: "full" or "compact", as `glint run --stats`

@@ -1,6 +1,7 @@
 # Tests `glint run` of PTX kernels with the real binary: results on both machines, and what is said of mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: kernel_test.py GLINT SOURCE_DIR"""
+import json
 import re
 import struct
 
@@ -54,6 +55,48 @@ class Kernels(GlintTest):
         self.write("none.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n")
         self.expect(2, ["no kernel"], "init", "a.toml", "none.ptx")
         self.assertFalse((self.folder / "a.toml").exists())
+
+    def write_list(self, more=""):
+        """Writes two launches of saxpy over the same buffers, y = 2 * x + y, and a third one, x = y + x."""
+        self.write("saxpy.ptx", (KERNELS / "saxpy.ptx").read_text())
+        text = (KERNELS / "saxpy.toml").read_text()
+        text += '\n[[launch]]\nname = "first"\n\n[[launch]]\nname = "again"\ncaches = "warm"\n\n[[launch]]\nname = "back"\n'
+        text += "".join(f"[[launch.argument]]\n{each}\n" for each in ('buffer = "y"', 'buffer = "x"', "f32 = 1.0", "u32 = 1000"))
+        self.write("list.toml", text.replace('init = "iota"', 'init = "iota"\nsave = true') + more)
+
+    def cycles(self, folder):
+        row = next(r for r in (self.folder / folder / "stats.csv").read_text().splitlines() if r.startswith("gpu.cycles,"))
+        return int(row.split(",")[1])
+
+    def test_launches_of_a_list_run_in_order_and_keep_memory(self):
+        self.write_list()
+        for mode in ("functional", "timing"):
+            done = self.glint("run", "list.toml", "--mode", mode, "--out", mode)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            values = {name: struct.unpack("<1000f", (self.folder / mode / f"{name}.bin").read_bytes()) for name in "xy"}
+            self.assertEqual(values["y"], tuple(4.0 * i + 1 for i in range(1000)))
+            self.assertEqual(values["x"], tuple(5.0 * i + 1 for i in range(1000)))
+        folders = ["launch-0-first", "launch-1-again", "launch-2-back"]
+        whole = json.loads((self.folder / "timing/run.json").read_text())
+        self.assertEqual(whole["launches"], folders)
+        cycles = [self.cycles(f"timing/{each}") for each in folders]
+        self.assertEqual(self.cycles("timing"), sum(cycles))
+        self.assertLess(cycles[1], cycles[0])  # The L2 has the buffers.
+        self.assertEqual(self.glint("report", "timing", "--out", "page.html").returncode, 0)
+        self.assertIn("again", (self.folder / "page.html").read_text())
+
+    def test_a_cold_launch_of_a_list_has_the_cycles_that_it_has_alone(self):
+        self.write_list()
+        self.write("list.toml", (self.folder / "list.toml").read_text().replace('caches = "warm"\n', ""))
+        self.assertEqual(self.glint("run", "list.toml", "--out", "list").returncode, 0)
+        self.assertEqual(self.glint("run", KERNELS / "saxpy.toml", "--out", "alone").returncode, 0)
+        self.assertEqual({self.cycles(each) for each in ("list/launch-0-first", "list/launch-1-again")}, {self.cycles("alone")})
+
+    def test_mistakes_of_a_list_are_told(self):
+        self.write_list('[[launch]]\ncaches = "hot"\n[[launch.argument]]\nbuffer = "y"\ncount = 3\n')
+        self.expect(2, ["a launch needs a 'name'", "'caches' must be", "buffer 'y' is there already"], "run", "list.toml")
+        self.write_list()
+        self.expect(2, ["list of launches"], "run", "saxpy.ptx", "--launch", "list.toml")
 
     def test_a_kernel_without_a_launch_file_is_refused(self):
         self.expect(2, ["needs a launch file"], "run", KERNELS / "saxpy.ptx")

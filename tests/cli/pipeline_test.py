@@ -46,6 +46,10 @@ class PipelineTest(GlintTest):
         return self.write("edited.toml", text)
 
 
+# tests/python runs the notebooks, policy_test.py the policies, tests/vulkan the programs for graphics cards.
+TESTED_ELSEWHERE = ("notebooks", "policies", "rt_frames", "rt_microbench")
+
+
 class Examples(PipelineTest):
     def test_every_example_gives_the_picture_of_the_docs_on_both_machines(self):
         for name in PICTURES:
@@ -68,9 +72,9 @@ class Examples(PipelineTest):
 
     def test_every_example_has_its_page_and_its_test(self):
         names = {p.name for p in (ROOT / "examples").iterdir() if p.is_dir()}
-        self.assertEqual(names, {*PICTURES, "reduction", "notebooks", "policies"})  # tests/python runs the notebooks, policy_test.py the policies
+        self.assertEqual(names, {*PICTURES, "reduction", *TESTED_ELSEWHERE})
         page = (ROOT / "docs/pipelines.md").read_text()
-        for name in names - {"notebooks", "policies"}:
+        for name in names - set(TESTED_ELSEWHERE):
             self.assertIn(f"examples/{name}", page)
 
     def test_a_run_leaves_a_complete_directory(self):

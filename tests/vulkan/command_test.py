@@ -57,6 +57,13 @@ class Command(VulkanTest):
         self.vulkan("--", CLIENT, "[three_launches]")
         self.assertEqual(sorted(path.name for path in (self.folder / "out").iterdir()), ["vulkan-test_vulkan", "vulkan-test_vulkan-2"])
 
+    def test_a_wrong_choice_of_launches_is_refused_before_the_program_runs(self):
+        for choice, message in (("nonsense", "--timing: 'nonsense' is none of 'all'"), ("dispatch 3-1", "'3-1' ends before it begins")):
+            done = self.vulkan("--timing", choice, "--", "sh", "-c", "echo ran", code=2)
+            self.assertIn(message, done.stderr)
+            self.assertEqual(done.stdout, "")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_a_launch_that_fails_is_told_with_its_line(self):
         done = self.vulkan("--set", "core.instruction_budget=100000", "--timing", "all", "--out", "lost", "--", CLIENT, "[endless_launch]")
         self.assertIn("failed: dispatch 0: ", done.stderr)

@@ -195,6 +195,22 @@ TEST_CASE("a shader stores and fetches each sample, and a resolve takes their me
     }
 }
 
+TEST_CASE("a clear of a stencil image takes the stencil's value", "[graphics]") {
+  Client client;
+  const VkExtent3D extent{4, 2, 1};
+  BoundImage stencil = client.image(VK_FORMAT_S8_UINT, extent);
+  stencil.all.aspectMask = VK_IMAGE_ASPECT_STENCIL_BIT;
+  const MappedBuffer out = client.buffer(8);
+
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    const VkClearDepthStencilValue value{0.5f, 77};
+    vkCmdClearDepthStencilImage(commands, stencil.image, VK_IMAGE_LAYOUT_GENERAL, &value, 1, &stencil.all);
+  }) == VK_SUCCESS);
+  REQUIRE(client.download(stencil, out, extent) == VK_SUCCESS);
+
+  for (const uint8_t each : out.as<uint8_t>()) REQUIRE(each == 77);
+}
+
 TEST_CASE("a sample that an image lacks is dropped and does not meet the next layer") {
   Client::Options options;
   options.features.shaderStorageImageMultisample = options.features.robustBufferAccess = VK_TRUE;

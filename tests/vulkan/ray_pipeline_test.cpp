@@ -37,7 +37,7 @@ const std::vector<RayShader> kSixStages{
      kHead +
          "layout(location = 0) rayPayloadInEXT uint value;\nlayout(location = 1) callableDataEXT uint data;\n"
          "void main() { data = gl_InstanceCustomIndexEXT; executeCallableEXT(0, 1);\n"
-         "  value += data + 2000 * far_away(); }\n"},
+         "  value += data + 2000 * far_away() + 100000 * gl_IncomingRayFlagsEXT; }\n"},
     {VK_SHADER_STAGE_ANY_HIT_BIT_KHR, kHead + "layout(location = 0) rayPayloadInEXT uint value;\n"
                                               "void main() { value += 4000 * far_away(); if "
                                               "(gl_InstanceCustomIndexEXT == 11) ignoreIntersectionEXT; }\n"},

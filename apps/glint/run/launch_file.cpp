@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "base/toml_text.h"
@@ -51,29 +52,69 @@ class Reader {
 
   LaunchFile run() {
     const toml::table root = toml_of_file(path_);
-    reject_others(root, {"kernel", "entry", "grid", "block", "shared_bytes", "contract", "argument"},
-                  "a launch");
-    LaunchFile out;
-    out.kernel = beside(text(root, "kernel").value_or(""));
-    if (out.kernel.empty())
+    reject_others(root,
+                  {"kernel", "entry", "grid", "block", "shared_bytes", "contract", "argument", "launch"},
+                  "a launch file");
+    KernelLaunch common;
+    common.where = {path_, 0, 0};
+    launch(root, common);
+    if (common.kernel.empty())
       errors_.error({path_, 0, 0},
                     "'kernel' is missing: it is the path of the PTX file, relative to this file's folder");
-    out.entry = text(root, "entry").value_or("");
-    out.contract = flag(root, "contract", true);
-    size_of(root, "grid", out.grid.grid);
-    size_of(root, "block", out.grid.block);
-    out.grid.dynamic_shared_bytes = uint32_t(integer(root, "shared_bytes", 0, uint32_t(-1)).value_or(0));
-    if (const toml::node* list = root.get("argument")) {
-      if (!list->is_array_of_tables())
-        errors_.error(where(*list), "'argument' must be tables: [[argument]]");
-      else
-        for (const toml::node& each : *list->as_array()) out.arguments.push_back(argument(*each.as_table()));
-    }
+    LaunchFile out;
+    if (const toml::node* list = root.get("launch"); !list)
+      out.launches.push_back(std::move(common));
+    else if (!list->is_array_of_tables() || list->as_array()->empty())
+      errors_.error(where(*list), "'launch' must be tables: [[launch]]");
+    else
+      for (const toml::node& each : *list->as_array())
+        out.launches.push_back(listed(*each.as_table(), common));
     errors_.throw_if_errors();
     return out;
   }
 
  private:
+  // Reads what a launch has in common with a file. What stands in `out` already are the defaults.
+  void launch(const toml::table& table, KernelLaunch& out) {
+    if (const auto kernel = text(table, "kernel")) out.kernel = beside(*kernel), out.entry = "";
+    out.entry = text(table, "entry").value_or(out.entry);
+    out.contract = flag(table, "contract", out.contract);
+    size_of(table, "grid", out.grid.grid);
+    size_of(table, "block", out.grid.block);
+    out.grid.dynamic_shared_bytes =
+        uint32_t(integer(table, "shared_bytes", 0, uint32_t(-1)).value_or(out.grid.dynamic_shared_bytes));
+    const toml::node* const list = table.get("argument");
+    if (!list) return;
+    out.arguments.clear();
+    if (!list->is_array_of_tables())
+      errors_.error(where(*list), "'argument' must be tables, such as [[argument]] or [[launch.argument]]");
+    else
+      for (const toml::node& each : *list->as_array()) out.arguments.push_back(argument(*each.as_table()));
+  }
+
+  // Reads one of several launches, whose defaults are those of the file. Its name is also that of a folder.
+  KernelLaunch listed(const toml::table& table, const KernelLaunch& common) {
+    reject_others(
+        table, {"name", "kernel", "entry", "grid", "block", "shared_bytes", "contract", "caches", "argument"},
+        "a launch");
+    KernelLaunch out = common;
+    out.where = where(table);
+    out.name = text(table, "name").value_or("");
+    if (out.name.empty() || out.name.find_first_of("/\\") != std::string::npos || out.name.starts_with('.'))
+      errors_.error(out.where,
+                    "a launch needs a 'name'. It names a folder, so it has no slash and no dot at its start");
+    const std::string caches = text(table, "caches").value_or("cold");
+    if (caches != "cold" && caches != "warm")
+      errors_.error(out.where, "'caches' must be \"cold\" or \"warm\"");
+    out.warm = caches == "warm";
+    if (!table.contains("argument"))
+      for (LaunchArgument& each : out.arguments) each.is_known = each.is_buffer && known_.count(each.name);
+    launch(table, out);
+    for (const LaunchArgument& each : out.arguments)
+      if (each.is_buffer) known_.insert(each.name);
+    return out;
+  }
+
   SourceLocation where(const toml::node& node) const {
     return {path_, int(node.source().begin.line), int(node.source().begin.column)};
   }
@@ -170,6 +211,11 @@ class Reader {
         "a buffer");
     out.is_buffer = true;
     out.name = text(table, "buffer").value_or("");
+    out.is_known = known_.count(out.name) != 0;
+    if (out.is_known && table.size() == 1) return;
+    if (out.is_known)
+      errors_.error(out.where,
+                    fmt::format("buffer '{}' is there already: a later launch names it alone", out.name));
     out.type = text(table, "type").value_or("u8");
     if (!is_type(out.type)) {
       errors_.error(out.where,
@@ -238,6 +284,7 @@ class Reader {
   }
 
   const std::string path_;
+  std::set<std::string> known_;  // buffers of the launches that were read
   Diagnostics errors_;
 };
 

@@ -1,4 +1,4 @@
-// Reads a launch of a PTX kernel from a TOML file: grid, arguments, what to keep.
+// Reads launches of PTX kernels from a TOML file: grids, arguments, what to keep.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
@@ -14,18 +14,27 @@ namespace glint::app {
 struct LaunchArgument {
   std::vector<std::byte> bytes;  // bytes of the number, or what the buffer holds at first
   bool is_buffer = false;
+  bool is_known = false;   // The buffer is that of an earlier argument with this name.
   std::string name, type;  // used for a buffer
   bool save = false;       // writes the buffer to NAME.bin in the run directory
   uint32_t show = 0;       // how many of the first values are printed
   SourceLocation where;
 };
 
-struct LaunchFile {
+struct KernelLaunch {
+  std::string name;      // empty: the file has one launch
   std::string kernel;    // path of the PTX file
   std::string entry;     // empty: the only entry
   bool contract = true;  // frontend::PtxOptions::contract
+  bool warm = false;     // It begins with what the launch before it left in the caches.
   pipeline::KernelGrid grid;
   std::vector<LaunchArgument> arguments;
+  SourceLocation where;
+};
+
+struct LaunchFile {
+  std::vector<KernelLaunch> launches;  // in order, at least one
+  bool is_list() const { return !launches[0].name.empty(); }
 };
 
 // Reads a launch file; shaders/kernels/README.md describes the format. Throws UserError that lists every

@@ -11,19 +11,10 @@
 #include "setup/recorded_launch.h"
 
 namespace glint::app {
-namespace {
 
-std::string shader_of(const pipeline::LaunchDescription& launch) {
-  if (!launch.compute.empty()) return launch.compute;
-  return launch.raygen->group.empty() ? launch.raygen->inlined.general : launch.raygen->group;
-}
-
-}  // namespace
-
-std::vector<std::string> launch_folders(const pipeline::PipelineDescription& description) {
+std::vector<std::string> launch_folders(const std::vector<std::string>& names) {
   std::vector<std::string> out;
-  for (const pipeline::LaunchDescription& launch : description.launches)
-    if (!launch.name.empty()) out.push_back(report::launch_folder(out.size(), launch.name));
+  for (const std::string& name : names) out.push_back(report::launch_folder(out.size(), name));
   return out;
 }
 
@@ -31,15 +22,15 @@ pipeline::RenderResult run_launches(const LaunchList& list, const report::RunInf
                                     const pipeline::LaunchWatch& watch, std::vector<std::string>& lines) {
   pipeline::Device device(list.job.gpu);
   pipeline::RenderResult sum;
-  const auto& launches = list.world.description().launches;
+  const std::vector<ListedLaunch>& launches = list.launches;
   for (size_t i = 0; i < launches.size(); ++i) {
-    const exec::World& world = list.world.world(i);
+    const exec::World& world = launches[i].prepare();
     const auto& [x, y, z] = world.launch_size;
     report::RunDirectory directory(list.directory.path_of(info.launches[i]));
     report::RunInfo own = info;
     own.launches.clear(), own.saved.clear(), own.outputs.clear();
     own.scene = fmt::format("{} {}", info.scene, launches[i].name);
-    own.shader = shader_of(launches[i]);
+    own.shader = launches[i].shader;
     own.frame[0].second = x, own.frame[1].second = y;
     setup::begin_directory(
         directory, own, list.job.gpu,
@@ -64,8 +55,6 @@ pipeline::RenderResult run_launches(const LaunchList& list, const report::RunInf
       sum.add(result);
     if (sum.end != pipeline::LaunchEnd::Whole) break;
   }
-  sum.structures = list.world.structures;
-  sum.warnings = list.world.warnings;
   return sum;
 }
 

@@ -119,10 +119,30 @@ report::RunInfo describe_run(const Session& session, const pipeline::PipelineWor
   };
   add(world.description().images, true);
   add(world.description().buffers, false);
-  info.launches = launch_folders(world.description());
+  std::vector<std::string> names;
+  for (const pipeline::LaunchDescription& launch : world.description().launches)
+    if (!launch.name.empty()) names.push_back(launch.name);
+  info.launches = launch_folders(names);
   info.frame[0].second = world.world().launch_size[0];
   info.frame[1].second = world.world().launch_size[1];
   return info;
+}
+
+std::string shader_of(const pipeline::LaunchDescription& launch) {
+  if (!launch.compute.empty()) return launch.compute;
+  return launch.raygen->group.empty() ? launch.raygen->inlined.general : launch.raygen->group;
+}
+
+pipeline::RenderResult run_list(LaunchList list, pipeline::PipelineWorld& world, const report::RunInfo& info,
+                                const pipeline::LaunchWatch& watch, std::vector<std::string>& lines) {
+  const auto& launches = world.description().launches;
+  for (size_t i = 0; i < launches.size(); ++i)
+    list.launches.push_back({launches[i].name, shader_of(launches[i]), launches[i].warm,
+                             [&world, i]() -> const exec::World& { return world.world(i); }});
+  pipeline::RenderResult sum = run_launches(list, info, watch, lines);
+  sum.structures = world.structures;
+  sum.warnings = world.warnings;
+  return sum;
 }
 
 }  // namespace
@@ -177,7 +197,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
-        if (is_list) return run_launches({session, options, job, world, directory}, info, watch, launches);
+        if (is_list) return run_list({session, options, job, directory, {}}, world, info, watch, launches);
         return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, watch,
                                       options.observe);
       },

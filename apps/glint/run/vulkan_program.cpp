@@ -18,6 +18,7 @@
 #include "apps/glint/run/child_process.h"
 #include "report/files/application_index.h"
 #include "report/terminal/progress.h"
+#include "setup/launch_selection.h"
 #include "setup/resources.h"
 
 namespace glint::app {
@@ -174,6 +175,7 @@ Exit run_vulkan_program(const Session& session, const VulkanProgram& program) {
     if (setting.find(' ') != std::string::npos)
       throw UserError({}, fmt::format("--set '{}' has a space in it, which the driver cannot take", setting));
   read_config(session.resources, program.config, program.settings);
+  setup::LaunchSelection::parse(program.timing, "--timing");  // for its errors: the driver reads it again
   const std::string folder = new_folder(program);
   Watching watching(session, folder);
   const int code = run_child(program.command, variables_of(program, folder), [&] { watching.look(); });

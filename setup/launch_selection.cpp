@@ -1,6 +1,6 @@
 // Chooses launches of an application: by number, frame, label, shader, or the first ones of each pipeline.
 // SPDX-License-Identifier: Apache-2.0
-#include "vulkan/launch_selection.h"
+#include "setup/launch_selection.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 
 #include "base/diagnostics.h"
 
-namespace glint::vulkan {
+namespace glint::setup {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -100,4 +100,4 @@ bool LaunchSelection::takes(const LaunchFacts& launch) const {
          });
 }
 
-}  // namespace glint::vulkan
+}  // namespace glint::setup

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace glint::vulkan {
+namespace glint::setup {
 
 // Says what a selection may ask of a launch.
 struct LaunchFacts {
@@ -56,4 +56,4 @@ class LaunchSelection {
   std::vector<std::string> labels_, shaders_;
 };
 
-}  // namespace glint::vulkan
+}  // namespace glint::setup
