@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/config.h"
 #include "apps/glint/options/python_package.h"
 #include "apps/glint/session.h"
 
@@ -27,16 +28,8 @@ void add_options(Command command, PaperOptions& options) {
                    "The short form: the paper's eight workloads instead of all 46, and no ablation");
   command.add_flag("--list", options.list, "Print what would be run, with what is complete, and run nothing");
   command.add_flag("--report", options.report, "Write the report of what is complete, and run nothing more");
-  command
-      .add_option("-j,--jobs", options.jobs,
-                  "Number of processes that run at a time; 0: one for each processor")
-      .in_range(0u, 1024u)
-      .capture_default_str();
-  command
-      .add_option("--assets", options.assets,
-                  "Folder that has the original scene data: everything is run with it, too")
-      .type_name("DIR")
-      .envname("GLINT_ASSETS");
+  add_jobs_option(command, options.jobs);
+  add_assets_option(command, options.assets, ": everything is run with it, too");
   command
       .add_option("--out", options.out,
                   "Folder for runs, analysis and report; what is complete there is not run again")
