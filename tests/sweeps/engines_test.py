@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """usage: engines_test.py GLINT SOURCE_DIR [Slurm|Dask|Executors]. Slurm and Dask are started for real; a test skips where they are not installed."""
 import concurrent.futures
+import contextlib
 import os
 import pathlib
 import random
@@ -68,20 +69,27 @@ class Slurm(EngineTest):
         cls.slurm = one_node_slurm.OneNodeSlurm(pathlib.Path(folder.name) / "slurm")
         cls.addClassCleanup(cls.slurm.stop)
 
+    def kill_a_task(self):
+        """Kills a process of a task, and returns whether there was one."""
+        for pid in self.slurm.tasks():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+                return True
+        return False
+
     def test_killed_tasks_a_requeued_one_and_a_killed_submitter_lose_nothing(self):
         child = self.start("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "5")
         self.some(6)
         child.send_signal(signal.SIGKILL)
         child.wait()
-        self.write(SWEEP.replace('"six-ty"', '"six"').replace("[1, 2, 3, 4, 6, 8]", "[1]"), "six.toml")  # Its name begins the other's.
-        self.glint("run", "six.toml", "--store", "store")
-        self.glint("cancel", "six.toml", "--store", "store")
-        self.until(self.slurm.tasks)
-        os.kill(self.slurm.tasks()[0], signal.SIGKILL)
+        self.until(self.kill_a_task)
         running = next((line.split("|")[0] for line in self.slurm.jobs() if "RUNNING" in line), None)
         if running:
             subprocess.run(["scontrol", "requeue", running], check=False)  # Slurm would let it wait for two minutes.
             subprocess.run(["scontrol", "update", f"JobId={running}", "StartTime=now"], check=False, stderr=subprocess.DEVNULL)
+        self.write(SWEEP.replace('"six-ty"', '"six"').replace("[1, 2, 3, 4, 6, 8]", "[1]"), "six.toml")  # Its name begins the other's.
+        self.glint("run", "six.toml", "--store", "store")
+        self.glint("cancel", "six.toml", "--store", "store")
         status = self.glint("status", "sweep.toml", "--store", "store").stdout
         self.assertIn("60 points", status)
         jobs = {line.split("|")[1] for line in self.slurm.jobs()}
@@ -91,11 +99,14 @@ class Slurm(EngineTest):
         self.assertEqual(self.slurm.tasks(), [])
 
     def test_detached_tasks_are_found_again_and_can_be_cancelled(self):
-        self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")
+        # No task runs before it is released.
+        self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach", "--slurm=--hold")
         self.assertEqual(sum("glint-six-ty" in line for line in self.slurm.jobs()), 6)
         self.assertIn("Slurm has 6 tasks", self.glint("status", "sweep.toml", "--store", "store").stdout)
         self.glint("run", "sweep.toml", "--engine", "slurm", "--store", "store", "--chunk", "10", "--detach")  # submits nothing twice
         self.assertEqual(sum("glint-six-ty" in line for line in self.slurm.jobs()), 6)
+        self.slurm.release_one()
+        self.some(1)
         self.glint("cancel", "sweep.toml", "--store", "store")
         self.until(lambda: not any("glint-six-ty" in line and "COMPLETING" not in line for line in self.slurm.jobs()))
         self.until(lambda: not self.slurm.tasks())

@@ -107,6 +107,11 @@ class OneNodeSlurm:
     def jobs(self):
         return subprocess.run(["squeue", "-h", "-r", "-o", "%A|%j|%T"], capture_output=True, text=True).stdout.splitlines()
 
+    def release_one(self):
+        """Lets one task of the held arrays run."""
+        held = subprocess.run(["squeue", "-h", "-r", "-o", "%F_%K"], capture_output=True, text=True, check=True).stdout.split()
+        subprocess.run(["scontrol", "release", held[0]], check=True)
+
     def tasks(self):
         """Returns the processes of tasks that run, which are children of slurmd's steps."""
         out = []
