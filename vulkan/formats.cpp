@@ -26,11 +26,12 @@ bool has_depth_and_stencil(VkFormat format) {
   return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
 }
 
-// Returns whether shaders may store to images of a format: those that SPIR-V has names for.
+// Returns whether shaders may store to images of a format: those that SPIR-V has names for, and that of most
+// swapchains, which ray tracers store to before they copy.
 bool can_store(exec::TexelFormat format) {
   const exec::FormatInfo& info = exec::info_of(format);
   if (info.numeric == exec::Numeric::Srgb) return false;
-  return format <= exec::TexelFormat::Rgb10a2Uint && format != exec::TexelFormat::Bgra8Unorm;
+  return format <= exec::TexelFormat::Rgb10a2Uint;
 }
 
 bool can_be_atomic(exec::TexelFormat format) {
@@ -112,12 +113,24 @@ VkFormatFeatureFlags2 attachment_features_of(const PhysicalDevice& device, VkFor
          (exec::is_integer(exec::info_of(*texels)) ? 0 : VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BLEND_BIT);
 }
 
+// Returns what buffers with a format could hold for graphics. Programs that make graphics pipelines ask for
+// it.
+VkFormatFeatureFlags2 graphics_features_of(const PhysicalDevice& device, VkFormat format) {
+  const bool is_triple = format >= VK_FORMAT_R32G32B32_UINT && format <= VK_FORMAT_R32G32B32_SFLOAT;
+  const auto texels = format_of(format);
+  const bool has_colour = texels && !is_depth(format) && format != VK_FORMAT_S8_UINT &&
+                          exec::info_of(*texels).numeric != exec::Numeric::Srgb;
+  const bool is_vertex = device.instance.settings.is_universal && (is_triple || has_colour);
+  return is_vertex ? VK_FORMAT_FEATURE_2_VERTEX_BUFFER_BIT : 0;
+}
+
 void GetPhysicalDeviceFormatProperties(PhysicalDevice& device, VkFormat format, VkFormatProperties* out) {
   // The flags of the older structure are the lower half.
   out->linearTilingFeatures = VkFormatFeatureFlags(image_features_of(format) & ~kWithoutFormat);
   out->optimalTilingFeatures =
       out->linearTilingFeatures | VkFormatFeatureFlags(attachment_features_of(device, format));
-  out->bufferFeatures = VkFormatFeatureFlags(buffer_features_of(format) & ~kWithoutFormat);
+  out->bufferFeatures = VkFormatFeatureFlags(buffer_features_of(format) & ~kWithoutFormat) |
+                        VkFormatFeatureFlags(graphics_features_of(device, format));
 }
 
 void GetPhysicalDeviceFormatProperties2(PhysicalDevice& device, VkFormat format, VkFormatProperties2* out) {
@@ -125,7 +138,7 @@ void GetPhysicalDeviceFormatProperties2(PhysicalDevice& device, VkFormat format,
   if (auto* more = find_in_output<VkFormatProperties3>(out, VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_3)) {
     more->linearTilingFeatures = image_features_of(format);
     more->optimalTilingFeatures = more->linearTilingFeatures | attachment_features_of(device, format);
-    more->bufferFeatures = buffer_features_of(format);
+    more->bufferFeatures = buffer_features_of(format) | graphics_features_of(device, format);
   }
 }
 

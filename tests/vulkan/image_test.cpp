@@ -60,6 +60,29 @@ TEST_CASE("what a shader stores to an image is what a copy brings to a buffer", 
       REQUIRE(out.as<uint32_t>()[y * 16 + x] == (0xff000000 | (255 - x) << 16 | y << 8 | x));
 }
 
+// Ray tracers store to an image of their swapchain's format and copy it.
+TEST_CASE("what a shader stores to an image of a swapchain's format has its channels in order") {
+  Client client;
+  const VkExtent3D extent{8, 8, 1};
+  const BoundImage image = client.image(VK_FORMAT_B8G8R8A8_UNORM, extent);
+  const MappedBuffer out = client.buffer(8 * 8 * 4);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
+      "layout(set = 0, binding = 1) uniform writeonly image2D picture;\n"
+      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  imageStore(picture, p, vec4(p.x, p.y, 255 - p.x, 255) / 255.0); }\n",
+      {{kStorage, kStorageImage}});
+  const VkDescriptorSet set =
+      set_with_image(client, pipeline, out, kStorageImage, {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+  REQUIRE(client.download(image, out, extent) == VK_SUCCESS);
+
+  for (uint32_t y = 0; y < 8; ++y)
+    for (uint32_t x = 0; x < 8; ++x)
+      REQUIRE(out.as<uint32_t>()[y * 8 + x] == (0xff000000 | x << 16 | y << 8 | (255 - x)));
+}
+
 TEST_CASE("a linear sampler blends texels, and the view's swizzle orders their channels", "[portable]") {
   Client client;
   const VkExtent3D extent{2, 1, 1};

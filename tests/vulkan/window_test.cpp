@@ -231,6 +231,20 @@ VkImageView colour_view_of(Client& client, VkImage image) {
 }
 
 // It needs GLINT_VK_QUEUE=universal.
+TEST_CASE("a device with a universal queue has formats of vertices", "[.][vertex_formats]") {
+  Client client;
+  for (const VkFormat each :
+       {VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32_SINT, VK_FORMAT_R8G8B8A8_UNORM}) {
+    VkFormatProperties can;
+    vkGetPhysicalDeviceFormatProperties(client.physical, each, &can);
+    CHECK((can.bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) != 0);
+  }
+  VkFormatProperties can;
+  vkGetPhysicalDeviceFormatProperties(client.physical, VK_FORMAT_D32_SFLOAT, &can);
+  CHECK((can.bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) == 0);
+}
+
+// It needs GLINT_VK_QUEUE=universal.
 TEST_CASE("a pass that clears to blue, clears a part to green, and draws in vain", "[.][dropped_draws]") {
   Screen screen;
   Client& client = screen.client;

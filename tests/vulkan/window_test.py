@@ -103,6 +103,11 @@ class Window(VulkanTest):
         self.assertEqual([(each["what"], each["count"]) for each in index["dropped"]], [("draws with graphics pipeline 1", 2)])
         self.assertEqual(index["commands"][-1]["dropped"], 2)
 
+    def test_a_universal_queue_has_formats_of_vertices(self):
+        result = self.run_on_glint(CLIENT, "[vertex_formats]", GLINT_VK_QUEUE="universal")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertNotEqual(self.run_on_glint(CLIENT, "[vertex_formats]").returncode, 0)
+
     @unittest.skipUnless(shutil.which("Xvfb") and shutil.which("vkcube"), "SKIPPED: Xvfb or vkcube is not installed (packages xvfb, vulkan-tools)")
     def test_a_window_of_x_gives_its_size(self):
         read, write = os.pipe()
