@@ -23,6 +23,20 @@ void ask_for(Device& device, VkStructureType type, const void* members) {
 }
 
 }  // namespace
+}  // namespace glint::vulkan
+
+// What one queue signals may free another one.
+void VkDevice_T::advance() {
+  for (bool has_run = true; has_run && !is_lost;) {
+    has_run = false;
+    for (VkQueue_T& each : queues) has_run = each.advance() || has_run;
+  }
+  if (is_lost)
+    for (VkQueue_T& each : queues) each.clear();
+  changed.notify_all();
+}
+
+namespace glint::vulkan {
 
 VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, VkDevice* out) {
   auto made = std::make_unique<Device>(physical);
@@ -51,12 +65,12 @@ void DestroyDevice(Device& device) {
   delete &device;
 }
 
-void GetDeviceQueue(Device& device, uint32_t, uint32_t, VkQueue* out) {
-  *out = &device.queue;
+void GetDeviceQueue(Device& device, uint32_t, uint32_t index, VkQueue* out) {
+  *out = &device.queues.at(index);
 }
 
-void GetDeviceQueue2(Device& device, const VkDeviceQueueInfo2*, VkQueue* out) {
-  *out = &device.queue;
+void GetDeviceQueue2(Device& device, const VkDeviceQueueInfo2* info, VkQueue* out) {
+  *out = &device.queues.at(info->queueIndex);
 }
 
 void GetDeviceGroupPeerMemoryFeatures(Device&, uint32_t, uint32_t, uint32_t, VkPeerMemoryFeatureFlags* out) {

@@ -1,8 +1,9 @@
-// Holds a device: its memory, its queue, and what the application asked for when it made it.
+// Holds a device: its memory, its queues, and what the application asked for when it made it.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -26,17 +27,23 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
       : physical(of),
         clock(of.gpu),
         recording(of.instance.settings, of.instance.messages, clock),
-        gpu(of.gpu) {}
+        gpu(of.gpu) {
+    for (uint32_t i = 0; i < glint::vulkan::kQueues; ++i) queues.emplace_back(*this);
+  }
   ~VkDevice_T() { glint::vulkan::used_by_process() -= allocated_bytes; }
   VkDevice_T(const VkDevice_T&) = delete;
   VkDevice_T& operator=(const VkDevice_T&) = delete;
+
+  // Runs what was submitted as far as it comes, and wakes the threads that wait for the device. Every call
+  // that may free a queue or such a thread calls it.
+  void advance();
 
   glint::vulkan::Messages& messages() const { return physical.instance.messages; }
   // Returns whether the application asked for a feature by its Vulkan name.
   bool has(std::string_view feature) const { return features.count(feature) != 0; }
 
   VkPhysicalDevice_T& physical;
-  std::mutex mutex;  // A command that is given this device, or its queue, holds it (guard.h).
+  std::mutex mutex;  // A command that is given this device, or one of its queues, holds it (guard.h).
   std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
   std::set<std::string, std::less<>> extensions;  // that the application enabled
@@ -59,5 +66,5 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   uint64_t frames = 0;   // that were presented
   uint64_t builds = 0;   // of acceleration structures
   bool is_lost = false;  // A launch did something that ends the device.
-  VkQueue_T queue{*this};
+  std::deque<VkQueue_T> queues;
 };

@@ -65,7 +65,7 @@ void GetPhysicalDeviceQueueFamilyProperties(PhysicalDevice& device, uint32_t* co
                                             VkQueueFamilyProperties* out) {
   VkQueueFlags flags = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
   if (device.instance.settings.is_universal) flags |= VK_QUEUE_GRAPHICS_BIT;
-  enumerate(1, count, out, [&](auto& to, uint32_t) { to = {flags, 1, 64, {1, 1, 1}}; });
+  enumerate(1, count, out, [&](auto& to, uint32_t) { to = {flags, kQueues, 64, {1, 1, 1}}; });
 }
 
 void GetPhysicalDeviceQueueFamilyProperties2(PhysicalDevice& device, uint32_t* count,

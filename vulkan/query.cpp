@@ -100,7 +100,7 @@ VkResult GetQueryPoolResults(Device& device, VkQueryPool pool, uint32_t first, u
     return std::all_of(pool->values.begin() + first, pool->values.begin() + first + count,
                        [](const auto& value) { return value.has_value(); });
   };
-  device.queue.advance();
+  device.advance();
   if (flags & VK_QUERY_RESULT_WAIT_BIT)
     device.changed.wait(device.mutex, [&] { return device.is_lost || is_there(); });
   if (device.is_lost) return VK_ERROR_DEVICE_LOST;

@@ -16,10 +16,17 @@ void VkQueue_T::submit(Submission submission) {
   pending_.push_back(std::move(submission));
 }
 
-void VkQueue_T::advance() {
-  while (!pending_.empty() && !device.is_lost && run(pending_.front())) pending_.pop_front();
-  if (device.is_lost) pending_.clear();
-  device.changed.notify_all();
+bool VkQueue_T::advance() {
+  bool has_run = false;
+  while (!pending_.empty() && !device.is_lost) {
+    Submission& first = pending_.front();
+    const size_t before = first.next;
+    const bool has_ended = run(first);
+    has_run = has_run || has_ended || first.next != before;
+    if (!has_ended) break;
+    pending_.pop_front();
+  }
+  return has_run;
 }
 
 bool VkQueue_T::run(Submission& submission) {
@@ -86,13 +93,13 @@ VkResult submit(Queue& queue, uint32_t count, const Info* infos, VkFence fence) 
   if (fence && all.empty()) all.emplace_back();
   if (fence) all.back().fence = fence;
   for (Submission& each : all) queue.submit(std::move(each));
-  queue.advance();
+  queue.device.advance();
   return VK_SUCCESS;
 }
 
-VkResult wait_until_idle(Device& device) {
-  device.queue.advance();
-  device.changed.wait(device.mutex, [&] { return device.is_lost || device.queue.is_idle(); });
+VkResult wait_until(Device& device, const std::function<bool()>& is_idle) {
+  device.advance();
+  device.changed.wait(device.mutex, [&] { return device.is_lost || is_idle(); });
   return device.is_lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
 
@@ -105,10 +112,13 @@ VkResult QueueSubmit2(Queue& queue, uint32_t count, const VkSubmitInfo2* infos, 
   return submit(queue, count, infos, fence);
 }
 VkResult QueueWaitIdle(Queue& queue) {
-  return wait_until_idle(queue.device);
+  return wait_until(queue.device, [&] { return queue.is_idle(); });
 }
 VkResult DeviceWaitIdle(Device& device) {
-  return wait_until_idle(device);
+  return wait_until(device, [&] {
+    return std::all_of(device.queues.begin(), device.queues.end(),
+                       [](const Queue& each) { return each.is_idle(); });
+  });
 }
 // Nothing is sparse, so only semaphores and the fence are left.
 VkResult QueueBindSparse(Queue& queue, uint32_t count, const VkBindSparseInfo* infos, VkFence fence) {

@@ -13,6 +13,10 @@
 
 namespace glint::vulkan {
 
+// Is the number of queues of the one family. Some frameworks want one for graphics, one for copies and one
+// for computing, and refuse a device with fewer.
+inline constexpr uint32_t kQueues = 4;
+
 // Is one recorded command. It returns false when it has to wait for the host, and is then called again.
 using Command = std::function<bool(Queue&)>;
 using CommandList = std::vector<std::shared_ptr<const Command>>;
@@ -37,9 +41,10 @@ struct VkQueue_T : glint::vulkan::Dispatchable {
   explicit VkQueue_T(VkDevice_T& of) : device(of) {}
 
   void submit(glint::vulkan::Submission submission);
-  // Runs submissions as far as they come, and wakes the threads that wait for the device. Every call that may
-  // free the queue or such a thread calls it.
-  void advance();
+  // Runs submissions as far as they come, and returns whether anything ran.
+  bool advance();
+  // Forgets what was submitted.
+  void clear() { pending_.clear(); }
   bool is_idle() const { return pending_.empty(); }
 
   VkDevice_T& device;

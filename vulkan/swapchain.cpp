@@ -89,7 +89,7 @@ VkResult acquire(Device& device, Swapchain& chain, uint64_t nanoseconds, VkSemap
   if (chain.is_retired) return VK_ERROR_OUT_OF_DATE_KHR;
   const VkResult result = result_of(chain);
   if (result < 0) return result;
-  device.queue.advance();
+  device.advance();
   std::optional<uint32_t> found = free_image(chain);
   constexpr uint64_t kLongest = uint64_t{1} << 55;  // A wait of more than a year has no end.
   if (!found && nanoseconds > kLongest)
@@ -107,7 +107,7 @@ VkResult acquire(Device& device, Swapchain& chain, uint64_t nanoseconds, VkSemap
   *out = *found;
   if (semaphore) semaphore->value = 1;
   if (fence) fence->is_signaled = true;
-  device.queue.advance();
+  device.advance();
   return result;
 }
 
@@ -188,7 +188,7 @@ VkResult QueuePresentKHR(Queue& queue, const VkPresentInfoKHR* info) {
     return true;
   }));
   queue.submit(std::move(submission));
-  queue.advance();
+  queue.device.advance();
   return all;
 }
 

@@ -15,7 +15,7 @@ namespace {
 // Lets the queue go on, then waits until `is_done` or until the time is over. The device's lock is free while
 // the thread sleeps, so that other threads may submit and signal.
 VkResult wait(Device& device, uint64_t nanoseconds, const std::function<bool()>& is_done) {
-  device.queue.advance();
+  device.advance();
   const auto is_over = [&] { return device.is_lost || is_done(); };
   // A wait of more than a year has no end.
   constexpr uint64_t kLongest = uint64_t{1} << 55;
@@ -41,7 +41,7 @@ VkResult ResetFences(Device&, uint32_t count, const VkFence* fences) {
   return VK_SUCCESS;
 }
 VkResult GetFenceStatus(Device& device, VkFence fence) {
-  device.queue.advance();
+  device.advance();
   if (device.is_lost) return VK_ERROR_DEVICE_LOST;
   return fence->is_signaled ? VK_SUCCESS : VK_NOT_READY;
 }
@@ -65,7 +65,7 @@ void DestroySemaphore(Device&, VkSemaphore semaphore) {
   delete semaphore;
 }
 VkResult GetSemaphoreCounterValue(Device& device, VkSemaphore semaphore, uint64_t* out) {
-  device.queue.advance();
+  device.advance();
   *out = semaphore->value;
   return device.is_lost ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
@@ -73,7 +73,7 @@ VkResult SignalSemaphore(Device& device, const VkSemaphoreSignalInfo* info) {
   if (info->value <= info->semaphore->value)
     throw Refusal("the new value of a timeline is larger than the old one");
   info->semaphore->value = info->value;
-  device.queue.advance();
+  device.advance();
   return VK_SUCCESS;
 }
 VkResult WaitSemaphores(Device& device, const VkSemaphoreWaitInfo* info, uint64_t nanoseconds) {
@@ -98,7 +98,7 @@ VkResult GetEventStatus(Device& device, VkEvent event) {
 }
 VkResult SetEvent(Device& device, VkEvent event) {
   event->is_set = true;
-  device.queue.advance();
+  device.advance();
   return VK_SUCCESS;
 }
 VkResult ResetEvent(Device&, VkEvent event) {

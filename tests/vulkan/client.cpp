@@ -75,10 +75,10 @@ void Client::make_device(const Options& options) {
   uint32_t count = 1;
   check(vkEnumeratePhysicalDevices(instance, &count, &physical), "vkEnumeratePhysicalDevices");
   if (!count) throw std::runtime_error("there is no Vulkan device");
-  const float priority = 1.0f;
+  const std::vector<float> priorities(options.queues, 1.0f);
   VkDeviceQueueCreateInfo queues{};
-  queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, queues.queueCount = 1;
-  queues.pQueuePriorities = &priority;
+  queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, queues.queueCount = options.queues;
+  queues.pQueuePriorities = priorities.data();
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   // glslang writes LocalSizeId into modules of SPIR-V 1.6, which Vulkan ties to this feature.

@@ -55,6 +55,7 @@ class Client {
     std::vector<const char*> instance_extensions;
     VkPhysicalDeviceFeatures features{};
     const void* more_features = nullptr;  // pNext of the device
+    uint32_t queues = 1;
   };
   Client() : Client(Options{}) {}
   explicit Client(const Options& options);

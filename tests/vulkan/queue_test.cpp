@@ -1,5 +1,6 @@
 // Tests fences, semaphores, events and timestamps over the Vulkan loader.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstring>
 
 #include "tests/support/catch.h"
@@ -20,7 +21,8 @@ Client::Options with_timelines() {
   return options;
 }
 
-void submit_after(Client& client, VkSemaphore semaphore, uint64_t waited, uint64_t signaled,
+// Submits nothing but the semaphore where there are no commands.
+void submit_after(VkQueue queue, VkSemaphore semaphore, uint64_t waited, uint64_t signaled,
                   VkCommandBuffer commands, VkFence fence) {
   VkTimelineSemaphoreSubmitInfo values{};
   values.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
@@ -30,9 +32,41 @@ void submit_after(Client& client, VkSemaphore semaphore, uint64_t waited, uint64
   VkSubmitInfo submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, submit.pNext = &values;
   submit.waitSemaphoreCount = 1, submit.pWaitSemaphores = &semaphore, submit.pWaitDstStageMask = &stages;
-  submit.commandBufferCount = 1, submit.pCommandBuffers = &commands;
+  submit.commandBufferCount = commands ? 1 : 0, submit.pCommandBuffers = &commands;
   submit.signalSemaphoreCount = 1, submit.pSignalSemaphores = &semaphore;
-  check(vkQueueSubmit(client.queue, 1, &submit, fence), "vkQueueSubmit");
+  check(vkQueueSubmit(queue, 1, &submit, fence), "vkQueueSubmit");
+}
+
+TEST_CASE("a queue that waits for another one goes on when that one has signaled") {
+  Client::Options options = with_timelines();
+  options.queues = 3;
+  Client client(options);
+  std::array<VkQueue, 3> queues{};
+  for (uint32_t i = 0; i < queues.size(); ++i) vkGetDeviceQueue(client.device, 0, i, &queues[i]);
+  CHECK(queues[0] != queues[1]);
+  CHECK(queues[1] != queues[2]);
+  const MappedBuffer out = client.buffer(64);
+  std::memset(out.data, 0, out.bytes);
+  const VkSemaphore timeline = client.timeline(0);
+  const VkFence fence = client.fence();
+  // The copy on queue 2 waits for 2, which the fill on queue 1 signals; the fill waits for 1.
+  VkCommandBuffer fill = nullptr, copy = nullptr;
+  REQUIRE(client.record(fill, [&](VkCommandBuffer to) { vkCmdFillBuffer(to, out.buffer, 0, 16, 77); }) ==
+          VK_SUCCESS);
+  const VkBufferCopy region{0, 32, 16};
+  REQUIRE(client.record(copy, [&](VkCommandBuffer to) {
+    vkCmdCopyBuffer(to, out.buffer, out.buffer, 1, &region);
+  }) == VK_SUCCESS);
+
+  submit_after(queues[2], timeline, 2, 3, copy, fence);
+  submit_after(queues[1], timeline, 1, 2, fill, nullptr);
+
+  CHECK(vkQueueWaitIdle(queues[0]) == VK_SUCCESS);
+  CHECK(vkGetFenceStatus(client.device, fence) == VK_NOT_READY);
+  submit_after(queues[0], timeline, 0, 1, nullptr, nullptr);
+  CHECK(vkGetFenceStatus(client.device, fence) == VK_SUCCESS);
+  CHECK(vkDeviceWaitIdle(client.device) == VK_SUCCESS);
+  CHECK(out.as<uint32_t>()[8] == 77);
 }
 
 TEST_CASE("a submission waits for a timeline that the host signals later", "[portable]") {
@@ -46,7 +80,7 @@ TEST_CASE("a submission waits for a timeline that the host signals later", "[por
     vkCmdFillBuffer(to, out.buffer, 0, VK_WHOLE_SIZE, 77);
   }) == VK_SUCCESS);
 
-  submit_after(client, timeline, 5, 9, commands, fence);
+  submit_after(client.queue, timeline, 5, 9, commands, fence);
 
   CHECK(vkGetFenceStatus(client.device, fence) == VK_NOT_READY);
   CHECK(vkWaitForFences(client.device, 1, &fence, VK_TRUE, 1000) == VK_TIMEOUT);
