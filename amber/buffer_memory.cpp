@@ -14,6 +14,7 @@ Address BufferMemory::range(const Buffer& buffer, uint64_t first, uint64_t end) 
   const uint64_t bytes = buffer.bytes.size();
   const auto [copy, is_new] = copies_.try_emplace(buffer.name);
   if (is_new) {
+    copy->second.bytes = bytes;
     copy->second.backing = memory_.add_backing(bytes + kLeast);
     if (bytes) std::memcpy(memory_.data(copy->second.backing), buffer.bytes.data(), bytes);
   }
@@ -24,6 +25,19 @@ Address BufferMemory::range(const Buffer& buffer, uint64_t first, uint64_t end) 
     range->second = memory_.open_window(title, copy->second.backing, first, std::max(end - first, kLeast));
   }
   return range->second;
+}
+
+void BufferMemory::update(const Buffer& buffer) {
+  const auto found = copies_.find(buffer.name);
+  if (found == copies_.end()) return;
+  Copy& copy = found->second;
+  if (copy.bytes == buffer.bytes.size()) {
+    if (copy.bytes) std::memcpy(memory_.data(copy.backing), buffer.bytes.data(), copy.bytes);
+    return;
+  }
+  for (const auto& [range, address] : copy.ranges) memory_.free(address);
+  memory_.free(copy.backing);
+  copies_.erase(found);
 }
 
 void BufferMemory::read_back(Buffer& buffer) const {

@@ -23,9 +23,12 @@ class BufferMemory {
   Address whole(const Buffer& buffer) { return range(buffer, 0, buffer.bytes.size()); }
   // Copies the bytes in memory to a buffer, if it was uploaded.
   void read_back(Buffer& buffer) const;
+  // Takes over what the host has written to a buffer. Its addresses stay, unless its size has changed.
+  void update(const Buffer& buffer);
 
  private:
   struct Copy {
+    uint64_t bytes = 0;  // of the buffer
     mem::Backing backing{};
     std::map<std::pair<uint64_t, uint64_t>, Address> ranges;
   };

@@ -1,17 +1,14 @@
-// Uploads what a pipeline binds, runs the pipeline and reads the buffers back.
+// Binds what a pipeline names, runs the pipeline and reads the buffers back.
 // SPDX-License-Identifier: Apache-2.0
 #include "amber/launch.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <fmt/format.h>
-#include <span>
+#include <utility>
 
-#include "amber/buffer_memory.h"
 #include "amber/declared_binding.h"
 #include "pipeline/launch_builder.h"
-#include "pipeline/render.h"
 
 namespace glint::amber {
 namespace {
@@ -48,15 +45,14 @@ pipeline::BindingPlace place_of(const Binding& binding) {
 
 class Launch {
  public:
-  Launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
+  Launch(Script& script, const Command& command, const CompiledPipeline& code, ScriptMemory& memory,
          const LaunchOptions& options)
       : script_(script),
         command_(command),
         pipeline_(script.pipelines.at(command.pipeline)),
-        shaders_(shaders),
-        code_(programs_of(shaders), bindings_of(shaders), options.gpu, options.cache),
-        builder_(code_, memory_),
-        bvh_(options.gpu.bvh) {
+        shaders_(code.shaders),
+        memory_(memory),
+        builder_(code.linked, memory.space) {
     exec::World& world = builder_.world;
     world.robust_images = world.robust_buffers = !options.strict || declares_robust_access(script);
     world.on_fault = options.on_fault;
@@ -68,12 +64,17 @@ class Launch {
       set_compute();
     builder_.finish(stack_need_);
   }
+  Launch(const Launch&) = delete;
+  Launch& operator=(const Launch&) = delete;
+  ~Launch() {
+    for (const Address each : builder_.allocations()) memory_.space.free(each);
+  }
 
-  Launched run(const LaunchOptions& options) {
-    const pipeline::RenderResult result = pipeline::run_world(builder_.world, options.gpu, options.timing,
-                                                              options.no_skip, options.threads, {});
-    for (auto& [name, buffer] : script_.buffers) buffers_.read_back(buffer);
-    return {result.cycles, result.faults};
+  const exec::World& world() const { return builder_.world; }
+  std::string shaders() const {
+    std::string out;
+    for (const CompiledShader& shader : shaders_) out += (out.empty() ? "" : " ") + shader.name;
+    return out;
   }
 
  private:
@@ -86,8 +87,6 @@ class Launch {
   void bind_structures(const Binding& binding);
   void set_push_constants(const Binding& binding);
   exec::ImageView view_of(const Binding& binding, const Buffer& buffer, size_t element);
-  Address build(const std::string& top_level);
-  rt::StructureInfo build_bottom(const std::string& name);
   pipeline::TableRecord record(const std::string& group, pipeline::TableInput& input);
   pipeline::TableRegion region(const std::string& table, pipeline::TableInput& input);
   std::vector<pipeline::TableRecord> records(const std::string& table, pipeline::TableInput& input);
@@ -96,13 +95,9 @@ class Launch {
   const Command& command_;
   const Pipeline& pipeline_;
   const std::vector<CompiledShader>& shaders_;
-  mem::AddressSpace memory_;
-  BufferMemory buffers_{memory_};
-  const pipeline::LinkedShaders code_;
+  ScriptMemory& memory_;
   pipeline::LaunchBuilder builder_;
-  const rt::BuildOptions& bvh_;
-  uint32_t stack_need_ = 0;                    // entries for the deepest structure
-  std::map<std::string, Address> structures_;  // of top levels
+  uint32_t stack_need_ = 0;  // entries for the deepest structure
 };
 
 void Launch::set_compute() {
@@ -187,7 +182,7 @@ void Launch::bind_buffers(const Binding& binding) {
                                                  offset, buffer.name, buffer.bytes.size()));
     const uint64_t rest = buffer.bytes.size() - offset,
                    bytes = i < binding.ranges.size() ? std::min(rest, binding.ranges[i]) : rest;
-    all.push_back({buffers_.range(buffer, offset, offset + bytes), bytes});
+    all.push_back({memory_.buffers.range(buffer, offset, offset + bytes), bytes});
   }
   builder_.bind_buffers(place_of(binding), all);
 }
@@ -213,7 +208,8 @@ exec::ImageView Launch::view_of(const Binding& binding, const Buffer& buffer, si
                : dimensions == 1 ? isa::ImageShape::D1
                : dimensions == 2 ? isa::ImageShape::D2
                                  : isa::ImageShape::D3;
-  view.base = buffers_.whole(buffer) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
+  view.base =
+      memory_.buffers.whole(buffer) + (element < binding.offsets.size() ? binding.offsets[element] : 0);
   if (binding.base_level >= view.levels)
     throw UserError(binding.where, fmt::format("'{}' has {} levels", buffer.name, view.levels));
   view = exec::part_of(
@@ -236,37 +232,13 @@ void Launch::bind_samplers(const Binding& binding) {
   builder_.bind_samplers(place_of(binding), std::move(all));
 }
 
-rt::StructureInfo Launch::build_bottom(const std::string& name) {
-  rt::BottomLevel level;
-  for (const BottomLevel::Geometry& g : script_.bottom_levels.at(name).geometries) {
-    rt::Geometry geometry;
-    geometry.positions = std::as_bytes(std::span(g.vertices)), geometry.aabbs = g.boxes;
-    geometry.opaque = g.opaque, geometry.no_duplicate_any_hit = g.no_duplicate_any_hit;
-    level.geometries.push_back(geometry);
-  }
-  return rt::build_bottom(memory_, "bottom level " + name, level, bvh_);
-}
-
-Address Launch::build(const std::string& top_level) {
-  const auto [it, is_new] = structures_.try_emplace(top_level, 0);
-  if (!is_new) return it->second;
-  std::vector<rt::StructureInfo> bottoms;
-  std::map<std::string, uint32_t> index_of;
-  std::vector<rt::Instance> instances;
-  for (const auto& [name, description] : script_.top_levels.at(top_level).instances) {
-    const auto [known, is_first] = index_of.try_emplace(name, uint32_t(bottoms.size()));
-    if (is_first) bottoms.push_back(build_bottom(name));
-    instances.push_back(description);
-    instances.back().bottom = known->second;
-  }
-  const rt::StructureInfo top = rt::build_top(memory_, "top level " + top_level, instances, bottoms, bvh_);
-  stack_need_ = std::max(stack_need_, top.stack_need);
-  return it->second = top.address;
-}
-
 void Launch::bind_structures(const Binding& binding) {
   std::vector<pipeline::BufferRange> all;
-  for (const std::string& name : binding.names) all.push_back({build(name), 0});
+  for (const std::string& name : binding.names) {
+    const rt::StructureInfo& top = memory_.structures.top_level(name);
+    stack_need_ = std::max(stack_need_, top.stack_need);
+    all.push_back({top.address, 0});
+  }
   builder_.bind_buffers(place_of(binding), all);
 }
 
@@ -277,11 +249,28 @@ void Launch::set_push_constants(const Binding& binding) {
 
 }  // namespace
 
-Launched launch(Script& script, const Command& command, const std::vector<CompiledShader>& shaders,
-                const LaunchOptions& options) {
+CompiledPipeline::CompiledPipeline(std::vector<CompiledShader> compiled, const LaunchOptions& options)
+    : shaders(std::move(compiled)),
+      linked(programs_of(shaders), bindings_of(shaders), options.gpu, options.cache) {
+}
+
+Launched launch(Script& script, const Command& command, const CompiledPipeline& code, ScriptMemory& memory,
+                pipeline::Device& device, const LaunchOptions& options, uint32_t number) {
   // In Vulkan such a launch does nothing.
   if (command.size[0] == 0 || command.size[1] == 0 || command.size[2] == 0) return {};
-  return Launch(script, command, shaders, options).run(options);
+  const Launch launch(script, command, code, memory, options);
+  Launched out{.is_launch = true};
+  const auto run = [&] {
+    pipeline::RenderResult result = device.run(launch.world(), options.mode, options.watch);
+    out.end = result.end, out.cycles = result.cycles, out.faults = result.faults;
+    return result;
+  };
+  if (options.record)
+    options.record({number, command.pipeline, launch.shaders(), launch.world()}, run);
+  else
+    run();
+  for (auto& [name, buffer] : script.buffers) memory.buffers.read_back(buffer);
+  return out;
 }
 
 }  // namespace glint::amber

@@ -21,6 +21,9 @@ struct Outcome {
   uint32_t launches = 0, expectations = 0;
 };
 
+// Makes it the outcome of a script that ended with an error.
+void note(Outcome& outcome, const Error& error);
+
 // Runs a script. It throws nothing for mistakes in the script.
 Outcome run_script(const std::string& path, const LaunchOptions& options);
 Outcome run_script(Script script, const LaunchOptions& options);

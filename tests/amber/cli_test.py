@@ -1,6 +1,7 @@
 # Tests `glint run` with Amber scripts: the exit codes and the messages.
 # SPDX-License-Identifier: Apache-2.0
 """usage: cli_test.py GLINT SOURCE_DIR"""
+import json
 import pathlib
 import sys
 
@@ -23,6 +24,25 @@ PIPELINE compute p
 END
 RUN p 1 1 1
 EXPECT b IDX 0 EQ 1 2
+"""
+# Doubles 4,096 numbers in each of three launches.
+DOUBLE = """#!amber
+SHADER compute s GLSL
+#version 450
+layout(local_size_x = 32) in;
+layout(binding = 0) buffer B { uint v[]; };
+void main() { v[gl_GlobalInvocationID.x] *= 2; }
+END
+BUFFER b DATA_TYPE uint32 SIZE 4096 FILL 1
+PIPELINE compute p:1
+  ATTACH s
+  BIND BUFFER b AS storage DESCRIPTOR_SET 0 BINDING 0
+END
+RUN p:1 128 1 1
+REPEAT 2
+  RUN p:1 128 1 1
+END
+EXPECT b IDX 0 EQ 8 8
 """
 GRAPHICS = "#!amber\nPIPELINE graphics p\nEND\n"
 
@@ -65,6 +85,46 @@ class Amber(GlintTest):
         self.check(self.glint("run", script), 0, "1 passed, 0 failed, 0 unsupported")
         self.check(self.glint("run", script, "--strict"), 4, "0 passed, 1 failed, 0 unsupported", "past.amber:12: ")
         self.expect(2, ["--strict belongs to Amber scripts"], "run", "WKND", "--strict")
+
+    def cycles(self, folder):
+        return int(self.statistics(folder)["gpu.cycles"])
+
+    def test_out_leaves_a_run_directory_of_each_launch_and_their_sum(self):
+        out = self.folder / "out"
+        done = self.run_scripts(DOUBLE, arguments=["--mode", "timing", "--profile", "--out", out])
+        self.assertEqual(done.returncode, 0, done.stderr)
+        run = json.loads((out / "run.json").read_text())
+        names = ["launch-0-p_1", "launch-1-p_1", "launch-2-p_1"]
+        self.assertEqual((run["launches"], run["exit"], run["scene"]["form"]), (names, 0, "script"))
+        cycles = [self.cycles(out / name) for name in names]
+        self.assertEqual(sum(cycles), self.cycles(out))
+        self.assertIn(f"0.amber: {sum(cycles)} cycles", done.stdout)
+        self.assertEqual(cycles[1], cycles[0])
+        self.assertTrue((out / names[2] / "profile.csv").exists())
+        self.glint("report", out)
+        self.assertIn(names[2], (out / "report.html").read_text())
+
+    def test_warm_caches_make_later_launches_shorter(self):
+        cold, warm = self.folder / "cold", self.folder / "warm"
+        self.run_scripts(DOUBLE, arguments=["--mode", "timing", "--out", cold])
+        self.run_scripts(DOUBLE, arguments=["--mode", "timing", "--out", warm, "--caches", "warm"])
+        self.assertEqual(self.cycles(warm / "launch-0-p_1"), self.cycles(cold / "launch-0-p_1"))
+        self.assertLess(self.cycles(warm / "launch-1-p_1"), self.cycles(cold / "launch-1-p_1"))
+        self.expect(2, ["--caches warm needs the timing machine"], "run", self.folder / "0.amber", "--caches", "warm")
+        self.expect(2, ["--caches belongs to Amber scripts"], "run", "WKND", "--caches", "warm")
+
+    def test_a_script_that_fails_says_so_in_its_run_directory(self):
+        bad = DOUBLE.replace("REPEAT", "EXPECT b IDX 0 EQ 3\nREPEAT")
+        self.run_scripts(DOUBLE, bad, arguments=["--out", self.folder / "out"])
+        good, failed = (json.loads((self.folder / "out" / name / "run.json").read_text()) for name in ("0", "1"))
+        self.assertEqual(len(good["launches"]), 3)
+        self.assertEqual((failed["launches"], failed["exit"]), (["launch-0-p_1"], 1))
+        self.assertIn("expected == 3, found 2", failed["message"])
+
+    def test_observations_need_a_run_directory(self):
+        script = self.write("0.amber", DOUBLE)
+        self.expect(2, ["need a run directory", "--out names it"], "run", script, "--profile")
+        self.expect(2, ["--profile"], "run", script, "--profile", "--out", self.folder / "functional")
 
     def test_other_files_beside_scripts_are_refused(self):
         done = self.run_scripts(GOOD, arguments=["WKND"])

@@ -7,7 +7,6 @@
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/frame_options.h"
-#include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/amber.h"
 #include "apps/glint/run/capsule.h"
 #include "apps/glint/run/compute.h"
@@ -24,7 +23,7 @@ struct RunOptions {
   LaunchOptions launch;
   std::string kernel_launch;      // launch file of a kernel
   std::vector<std::string> more;  // Amber scripts after the first
-  bool strict = false;            // for Amber scripts
+  ScriptOptions script;           // for Amber scripts
   bool small = false;             // for compute programs
 };
 
@@ -45,19 +44,19 @@ Exit run(const Session& session, const RunOptions& options) {
   const std::string& what = options.scene.scene;
   check_scene_options(options);
   if (names_script(what)) {
-    if (observes(options.launch.observe))
-      throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with Amber scripts",
-                      "a script has no run directory");
     if (options.launch.max_cycles)
       throw UserError({}, "--max-cycles cannot be used with Amber scripts",
                       "what a script expects needs whole launches; --max-instructions bounds a warp");
     std::vector<std::string> scripts = {what};
     scripts.insert(scripts.end(), options.more.begin(), options.more.end());
-    return run_amber(session, scripts, options.launch, options.strict);
+    return run_amber(session, scripts, options.launch, options.script);
   }
-  if (options.strict)
+  if (options.script.strict)
     throw UserError({}, "--strict belongs to Amber scripts",
                     "in other launches every access outside of a buffer or an image is a fault");
+  if (options.script.caches != "cold")
+    throw UserError({}, "--caches belongs to Amber scripts",
+                    "files with a list of launches say it for each launch: caches = \"warm\"");
   if (!options.more.empty())
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
                     "only Amber scripts can be run several at a time");
@@ -96,9 +95,15 @@ void add_scene_options(Command command, RunOptions& options) {
   add_frame_options(command, options.scene.frame);
   add_assets_option(command, options.scene.assets);
   command.add_flag(
-      "--strict", options.strict,
+      "--strict", options.script.strict,
       "Let accesses outside of buffers and images be faults in Amber scripts that do not declare "
       "robust access");
+  command
+      .add_option("--caches", options.script.caches,
+                  "Selects what each launch of an Amber script finds in the L2 and in DRAM's row buffers: "
+                  "cold means nothing, and warm what the launch before it has left")
+      .one_of({"cold", "warm"})
+      .capture_default_str();
   command.add_flag("--small", options.small, "Run a compute program on its small input");
   command.add_flag("--exr", options.scene.exr,
                    "Also write the picture of a scene as image.exr: floats of 32 bits, with transparency");

@@ -197,7 +197,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
-        if (is_list) return run_list({session, options, job, directory, {}}, world, info, watch, launches);
+        if (is_list) return run_list({options, job, directory, {}}, world, info, watch, launches);
         return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, watch,
                                       options.observe);
       },

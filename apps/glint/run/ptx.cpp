@@ -101,8 +101,7 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
         if (file.is_list())
-          return run_launches({session, options, job, directory, listed(file, kernels)}, info, watch,
-                              launches);
+          return run_launches({options, job, directory, listed(file, kernels)}, info, watch, launches);
         return pipeline::run_world(kernels.prepare(0), job.gpu, job.timing, options.no_skip, options.threads,
                                    watch, options.observe);
       },
