@@ -182,6 +182,20 @@ void check_room(const Device& device, const BuildInput& input) {
                               primitives, most, input.to->name, input.to->bytes));
 }
 
+namespace {
+
+void record(Device& device, const BuildInput& input, uint64_t bytes) {
+  if (!device.recording.is_on()) return;
+  report::DeviceCommand command;
+  command.kind = "build", command.structure = input.to->name;
+  command.begin = command.end = device.clock.now(), command.frame = device.frames;
+  command.count = primitives_of(input), command.bytes = bytes;
+  command.is_top = is_top(input), command.is_update = input.is_update, command.on_host = input.on_host;
+  device.recording.add(command);
+}
+
+}  // namespace
+
 // Model: building takes no simulated time.
 void build(Device& device, const BuildInput& input) {
   check_room(device, input);
@@ -195,6 +209,7 @@ void build(Device& device, const BuildInput& input) {
   rt::write_structure(device.memory, made, input.to->address);
   input.to->built = ++device.builds;
   input.to->update_bytes = input.allows_update ? most_bytes_of(device, input, primitives_of(input)) : 0;
+  record(device, input, made.bytes.size());
 }
 
 }  // namespace glint::vulkan

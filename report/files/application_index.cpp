@@ -39,6 +39,9 @@ bool is_command(const Json& json) {
   const auto is_text = [&](const char* key) { return json.contains(key) && json[key].is_string(); };
   if (!json.is_object() || !is_text("kind") || !is_number("begin") || !is_number("end")) return false;
   if (json["kind"] == "transfer") return is_number("count") && is_number("bytes");
+  if (json["kind"] == "build")
+    return is_number("frame") && is_text("structure") && is_text("level") && is_number("primitives") &&
+           is_number("bytes");
   const bool has_size = json.contains("size") && json["size"].is_array() &&
                         std::all_of(json["size"].begin(), json["size"].end(),
                                     [](const Json& one) { return one.is_number_unsigned(); });
@@ -67,6 +70,14 @@ void ApplicationIndex::add(const DeviceCommand& command) {
     json.update({{"frame", command.frame}, {"size", {command.size[0], command.size[1]}}});
     if (!command.file.empty()) json["file"] = command.file;
     if (command.dropped) json["dropped"] = command.dropped;
+  } else if (command.kind == "build") {
+    json.update({{"frame", command.frame},
+                 {"structure", command.structure},
+                 {"level", command.is_top ? "top" : "bottom"},
+                 {"primitives", command.count},
+                 {"bytes", command.bytes},
+                 {"by", command.on_host ? "host" : "device"},
+                 {"update", command.is_update}});
   } else {
     json.update({{"number", command.number},
                  {"frame", command.frame},
@@ -100,6 +111,10 @@ std::string ApplicationIndex::text(const ApplicationFacts& facts) const {
   std::string out = head.dump(2, ' ', false, Json::error_handler_t::replace);
   out.erase(out.rfind('\n'));  // "\n}"
   return out + ",\n  \"commands\": [" + commands_ + "\n]}\n";
+}
+
+bool is_launch(const Json& command) {
+  return command.contains("number");
 }
 
 bool is_application_folder(const std::string& folder) {

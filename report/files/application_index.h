@@ -14,22 +14,25 @@ namespace glint::report {
 inline constexpr int kApplicationSchema = 2;                    // schema of index.json
 inline constexpr const char* kApplicationIndex = "index.json";  // its name in the application's folder
 
-// Is one launch, one presented frame, or all transfers between two of these.
+// Is one launch, one build of an acceleration structure, one presented frame, or all transfers between two of
+// these.
 struct DeviceCommand {
-  std::string kind;     // "dispatch", "trace"; "present"; "transfer"
+  std::string kind;     // "dispatch", "trace"; "build"; "present"; "transfer"
   uint64_t number = 0;  // of a launch, counted from 0 over all kinds of launches
-  uint64_t frame = 0;   // of a launch: how many frames were presented before; of a present: its number
+  uint64_t frame = 0;   // how many frames were presented before; of a present: its number
   std::string shader, label;
   std::array<uint64_t, 3> size{};  // blocks of a dispatch, rays of a trace, pixels of a present
   uint64_t begin = 0, end = 0;     // core cycles on the device's clock
   uint64_t instructions = 0;       // warp instructions
   std::optional<uint64_t> cycles;  // of a launch that the timing machine ran
   uint64_t faults = 0;             // that were let pass
-  uint64_t count = 1, bytes = 0;   // of transfers
-  std::string folder;              // the run directory of a timed launch
-  uint64_t dropped = 0;            // draws of a present's frame that are not in its picture
-  std::string file;                // the picture of a present that has one of its own
-  std::string error;               // why the launch did not end
+  uint64_t count = 1, bytes = 0;   // of transfers; of a build: primitives, and the structure's bytes
+  std::string structure;           // the name of what a build has made
+  bool is_top = false, is_update = false, on_host = false;  // of a build
+  std::string folder;                                       // the run directory of a timed launch
+  uint64_t dropped = 0;  // draws of a present's frame that are not in its picture
+  std::string file;      // the picture of a present that has one of its own
+  std::string error;     // why the launch did not end
 };
 
 // Is what the driver did not do, and how often.
@@ -64,6 +67,8 @@ class ApplicationIndex {
 // Returns the index of an application's folder. Throws UserError when there is none, or when the file is not
 // what this version writes.
 nlohmann::ordered_json read_application(const std::string& folder);
+// Returns whether a command of an index is a launch.
+bool is_launch(const nlohmann::ordered_json& command);
 // Returns whether a folder holds an index.
 bool is_application_folder(const std::string& folder);
 

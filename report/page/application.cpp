@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "report/files/application_index.h"
 #include "report/page/parts.h"
 
 namespace glint::report {
@@ -29,20 +30,21 @@ struct Lane {
 };
 constexpr Lane kLanes[] = {{"timed launches", "var(--blue)"},
                            {"functional launches", "var(--orange)"},
-                           {"transfers", "var(--green)"}};
+                           {"transfers", "var(--green)"},
+                           {"builds of acceleration structures", "var(--pink)"}};
 
 bool is_present(const Json& command) {
   return command["kind"] == "present";
 }
-bool is_launch(const Json& command) {
-  return command["kind"] != "transfer" && !is_present(command);
+bool is_build(const Json& command) {
+  return command["kind"] == "build";
 }
 bool is_timed(const Json& command) {
   return is_launch(command) && !command["cycles"].is_null();
 }
 
 size_t lane_of(const Json& command) {
-  return !is_launch(command) ? 2 : is_timed(command) ? 0 : 1;
+  return is_build(command) ? 3 : !is_launch(command) ? 2 : is_timed(command) ? 0 : 1;
 }
 
 std::string size_of(const Json& command) {
@@ -51,6 +53,12 @@ std::string size_of(const Json& command) {
 
 // Returns what a launch is called: "dispatch 3: blur, shadows".
 std::string name_of(const Json& command) {
+  if (is_build(command))
+    return fmt::format("{} of the {} level '{}' of {} {}, {} bytes",
+                       command.value("update", false) ? "update" : "build",
+                       command["level"].get<std::string>(), command["structure"].get<std::string>(),
+                       command["primitives"].dump(), command["level"] == "top" ? "instances" : "primitives",
+                       command["bytes"].dump());
   if (!is_launch(command))
     return fmt::format("{} transfers of {} bytes", command["count"].dump(), command["bytes"].dump());
   std::string out = fmt::format("{} {}: {}", command["kind"].get<std::string>(), command["number"].dump(),
@@ -290,9 +298,10 @@ std::string trouble(const Json& index) {
 
 std::string sections_of(const Json& one) {
   const Json& index = one["index"];
-  uint64_t launches = 0, timed = 0, cycles = 0, end = 0;
+  uint64_t launches = 0, timed = 0, builds = 0, cycles = 0, end = 0;
   for (const Json& command : index["commands"]) {
     end = std::max(end, command["end"].get<uint64_t>());
+    builds += is_build(command);
     launches += is_launch(command);
     if (is_timed(command)) ++timed, cycles += command["cycles"].get<uint64_t>();
   }
@@ -302,11 +311,16 @@ std::string sections_of(const Json& one) {
       "on {}, "
       "of which {} were timed (<code>{}</code>): {} cycles.{}</p>\n{}"
       "<p class=\"note\">Commands run one after another. A launch that was not timed takes the time that its "
-      "instructions need at least, and a transfer that of its bytes at the memory’s peak.</p>\n</section>\n",
+      "instructions need at least, and a transfer that of its bytes at the memory’s "
+      "peak.{}</p>\n</section>\n",
       escaped(fmt::format("{}", fmt::join(words, " "))), shown(launches), escaped_text(index, "config"),
       shown(timed), escaped_text(index, "timing"), shown(cycles),
       index["state"] == "ended" ? "" : " <strong>The application did not end, or still runs.</strong>",
-      time_line(one, end));
+      time_line(one, end),
+      builds ? fmt::format(" The {} builds of acceleration structures take no simulated time: the time line "
+                           "shows when they happened.",
+                           shown(builds))
+             : "");
   if (timed)
     out +=
         "<section id=\"launches\">\n<h2>Launches by cycles</h2>\n<p class=\"lead\">These launches ran on the "

@@ -1,6 +1,7 @@
 # Tests `glint vulkan`, which runs a program on the driver and says what ran.
 # SPDX-License-Identifier: Apache-2.0
 """usage: command_test.py MANIFEST SOURCE_DIR CLIENT GLINT"""
+import json
 import pathlib
 import signal
 import subprocess
@@ -30,6 +31,20 @@ class Command(VulkanTest):
         self.assertNotIn('id="trouble"', page)
         self.assertTrue((self.folder / "here/launch-1-dispatch/report.html").exists())
 
+    def test_builds_of_structures_are_commands_of_the_time_line(self):
+        done = self.vulkan("--timing", "all", "--out", "rays", "--", CLIENT, "a ray query meets the instances that an application has built")
+        self.assertRegex(done.stderr, r"\n  ran: 1 dispatches, .*2 builds of acceleration structures\n")
+        commands = json.loads((self.folder / "rays/index.json").read_text())["commands"]
+        builds = [each for each in commands if each["kind"] == "build"]
+        self.assertEqual([(each["level"], each["by"], each["update"]) for each in builds],
+                         [("bottom", "device", False), ("top", "device", False)])
+        for each in builds:
+            self.assertEqual(each["begin"], each["end"])
+            self.assertGreater(each["bytes"], 64)
+        page = (self.folder / "rays/report.html").read_text()
+        self.assertIn("The 2 builds of acceleration structures take no simulated time", page)
+        self.assertIn("</span> builds of acceleration structures", page)
+
     def test_compact_statistics_leave_a_report_of_the_application_alone(self):
         self.vulkan("--timing", "dispatch 0", "--stats", "compact", "--out", "small", "--", CLIENT, "[three_launches]")
         launch = self.folder / "small/launch-0-dispatch"
@@ -53,7 +68,7 @@ class Command(VulkanTest):
 
     def test_without_a_choice_nothing_is_timed_and_a_note_says_how(self):
         done = self.vulkan("--", CLIENT, "[three_launches]")
-        self.assertIn("glint: 0 of 3 launches were timed: 0 cycles\nnote: --timing", done.stderr)
+        self.assertIn("glint: 0 of 3 launches were timed: 0 cycles\n  ran: 3 dispatches\nnote: --timing", done.stderr)
         self.vulkan("--", CLIENT, "[three_launches]")
         self.assertEqual(sorted(path.name for path in (self.folder / "out").iterdir()), ["vulkan-test_vulkan", "vulkan-test_vulkan-2"])
 

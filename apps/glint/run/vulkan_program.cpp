@@ -112,6 +112,23 @@ class Watching {
   std::optional<report::Progress> progress_;
 };
 
+// Returns what ran on one device, by kind: "3 dispatches, 2 transfers of 4096 bytes".
+std::string kinds_of(const Json& index) {
+  uint64_t dispatches = 0, traces = 0, transfers = 0, bytes = 0, builds = 0;
+  for (const Json& each : index["commands"]) {
+    const std::string kind = each["kind"];
+    dispatches += kind == "dispatch", traces += kind == "trace", builds += kind == "build";
+    if (kind == "transfer")
+      transfers += each["count"].get<uint64_t>(), bytes += each["bytes"].get<uint64_t>();
+  }
+  std::vector<std::string> out;
+  if (dispatches) out.push_back(fmt::format("{} dispatches", dispatches));
+  if (traces) out.push_back(fmt::format("{} traces", traces));
+  if (transfers) out.push_back(fmt::format("{} transfers of {} bytes", transfers, bytes));
+  if (builds) out.push_back(fmt::format("{} builds of acceleration structures", builds));
+  return out.empty() ? "nothing" : fmt::format("{}", fmt::join(out, ", "));
+}
+
 // Returns what ran on one device, line by line.
 std::string account_of(const Json& index, const std::string& folder) {
   std::vector<const Json*> timed;
@@ -119,12 +136,13 @@ std::string account_of(const Json& index, const std::string& folder) {
   uint64_t cycles = 0;
   for (const Json& each : index["commands"]) {
     frames += each["kind"] == "present";
-    if (each["kind"] == "transfer" || each["kind"] == "present") continue;
+    if (!report::is_launch(each)) continue;
     ++launches, failed += each.contains("error");
     if (each["cycles"].is_null()) continue;
     timed.push_back(&each), cycles += each["cycles"].get<uint64_t>();
   }
-  std::string out = fmt::format("{} of {} launches were timed: {} cycles\n", timed.size(), launches, cycles);
+  std::string out = fmt::format("{} of {} launches were timed: {} cycles\n  ran: {}\n", timed.size(),
+                                launches, cycles, kinds_of(index));
   if (frames) out += fmt::format("  {} frames were presented\n", frames);
   std::stable_sort(timed.begin(), timed.end(), [](const Json* a, const Json* b) {
     return (*a)["cycles"].get<uint64_t>() > (*b)["cycles"].get<uint64_t>();

@@ -131,6 +131,35 @@ TEST_CASE("frames divide the launches of an application") {
   CHECK_THAT(text, Catch::Contains("had 2 launches"));
 }
 
+TEST_CASE("builds of structures are no launches and have a lane of their own") {
+  report::ApplicationIndex index;
+  report::DeviceCommand build;
+  build.kind = "build", build.structure = "<b>roof", build.is_top = true, build.is_update = true;
+  build.count = 3, build.bytes = 1024, build.begin = build.end = 40, build.frame = 2;
+  index.add(build);
+  index.add(dispatch(0, 30, "a"));
+  const IndexFolder folder(index.text(facts()));
+  const Json json = report::read_application(folder.path);
+  CHECK(json["commands"][0] == Json({{"kind", "build"},
+                                     {"frame", 2},
+                                     {"structure", "<b>roof"},
+                                     {"level", "top"},
+                                     {"primitives", 3},
+                                     {"bytes", 1024},
+                                     {"by", "device"},
+                                     {"update", true},
+                                     {"begin", 40},
+                                     {"end", 40}}));
+  CHECK(!report::is_launch(json["commands"][0]));
+  CHECK(report::is_launch(json["commands"][1]));
+
+  const std::string text = sections(index);
+  CHECK_THAT(text, Catch::Contains("had 1 launches"));
+  CHECK_THAT(text, Catch::Contains("update of the top level '&lt;b&gt;roof' of 3 instances, 1024 bytes"));
+  CHECK_THAT(text, Catch::Contains("The 1 builds of acceleration structures take no simulated time"));
+  CHECK(text.find("<b>") == std::string::npos);
+}
+
 TEST_CASE("a time line of many short commands has no more bars than it has places") {
   report::ApplicationIndex index;
   for (uint64_t i = 0; i < 20000; ++i) index.add(dispatch(i, std::nullopt, "a"));
