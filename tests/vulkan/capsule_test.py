@@ -4,6 +4,7 @@
 import csv
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 
@@ -70,6 +71,25 @@ class Capsule(VulkanTest):
             self.assertTrue((self.folder / layout / "stats.csv").exists())
         self.assertIn("bvh.format", subprocess.run([GLINT, "compare", "bvh2", "bvh8"], cwd=self.folder, capture_output=True,
                                                    text=True, timeout=100).stdout)
+
+    def test_a_replay_leaves_the_buffers_that_it_changed(self):
+        capsules, _ = self.save("[three_launches]", "dispatch 0-1")
+        words = []
+        for number, path in sorted(capsules.items()):
+            self.replay(path, "--out", f"again-{number}")
+            self.assertEqual([name.name for name in (self.folder / f"again-{number}").glob("*.bin")], ["set0-binding0.bin"])
+            words.append(struct.unpack("<1024I", (self.folder / f"again-{number}/set0-binding0.bin").read_bytes()))
+        self.assertEqual(words[1], tuple(each * each % 2**32 for each in words[0]))  # The second launch squares.
+
+    def test_memory_that_is_reached_by_addresses_goes_along(self):
+        capsules, cycles = self.save("[addresses]", "dispatch 0")
+        self.assertLess(capsules[0].stat().st_size, 1 << 18)  # The buffer that no address names has four times as much.
+        self.replay(capsules[0], "--out", "again")
+        self.assertEqual(self.cycles("again"), cycles[0])
+        changed = [path for path in (self.folder / "again").glob("*.bin")]
+        self.assertEqual(len(changed), 1)
+        self.assertRegex(changed[0].name, r"allocation-\d+\.bin")
+        self.assertEqual(struct.unpack("<64I", changed[0].read_bytes()), tuple(i ^ 21 for i in range(64)))
 
     def test_damaged_and_foreign_files_are_refused(self):
         capsules, _ = self.save("[three_launches]", "dispatch 1")

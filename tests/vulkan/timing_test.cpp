@@ -1,5 +1,5 @@
-// Is the program of timing_test.py and recording_test.py: three launches of two pipelines, with a label
-// around the last, many launches, and one that does not end.
+// Is the program of timing_test.py, recording_test.py and capsule_test.py: three launches of two pipelines,
+// with a label around the last, one over addresses, many launches, and one that does not end.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +15,38 @@ constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 const std::string kHead =
     "#version 460\nlayout(local_size_x = 64) in;\n"
     "layout(set = 0, binding = 0) buffer A { uint a[]; };\n";
+
+// The shader finds the second buffer in the first one, whose address is pushed. Nothing is bound.
+TEST_CASE("a launch writes to what it reaches by addresses alone", "[.][addresses]") {
+  VkPhysicalDeviceVulkan12Features features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  features.bufferDeviceAddress = VK_TRUE;
+  Client::Options options;
+  options.more_features = &features, options.features.shaderInt64 = VK_TRUE;
+  Client client(options);
+  constexpr VkBufferUsageFlags kUses = Client::kAllUses | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+  const MappedBuffer first = client.buffer(64, kUses), second = client.buffer(256, kUses),
+                     unused = client.buffer(1 << 20, kUses);
+  std::memset(first.data, 0, first.bytes);
+  std::memset(second.data, 0, second.bytes);
+  std::memset(unused.data, 1, unused.bytes);
+  const auto address_of = [&](const MappedBuffer& of) {
+    const VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr, of.buffer};
+    return vkGetBufferDeviceAddress(client.device, &info);
+  };
+  const uint64_t pushed = address_of(first), found = address_of(second);
+  std::memcpy(static_cast<char*>(first.data) + 8, &found, sizeof found);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\n#extension GL_EXT_buffer_reference : require\nlayout(local_size_x = 64) in;\n"
+      "layout(buffer_reference) buffer Second { uint v[]; };\n"
+      "layout(buffer_reference) buffer First { uvec2 nothing; Second second; };\n"
+      "layout(push_constant) uniform P { First first; };\n"
+      "void main() { uint i = gl_LocalInvocationIndex; first.second.v[i] = i ^ 21u; }\n",
+      {{}, 8});
+  REQUIRE(client.dispatch(pipeline, nullptr, {1, 1, 1}, {uint32_t(pushed), uint32_t(pushed >> 32)}) ==
+          VK_SUCCESS);
+  CHECK(second.as<uint32_t>()[63] == (63 ^ 21));
+}
 
 TEST_CASE("three launches say what the timing machine took for them", "[.][three_launches]") {
   Client client;

@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -22,46 +25,94 @@
 namespace glint::app {
 namespace {
 
-// Is an image that the launch may write, with a hash of its first level before the launch.
-struct WatchedImage {
+// Is an image or a buffer that the launch may write, with a hash of its bytes before the launch: of an image,
+// those of its first level.
+struct Watched {
   std::string file, name;
-  exec::ImageView view;
-  uint64_t before = 0;
+  std::optional<exec::ImageView> image;
+  Address at = 0;
+  uint64_t bytes = 0, before = 0;
 };
 
-std::string_view texels_of(const mem::AddressSpace& memory, const exec::ImageView& view) {
-  const uint64_t bytes = view.bytes_before_level(1);
-  const std::byte* const texels = memory.find(view.base, bytes);
-  return texels ? std::string_view(reinterpret_cast<const char*>(texels), bytes) : std::string_view();
+std::string_view bytes_of(const mem::AddressSpace& memory, const Watched& watched) {
+  const std::byte* const found = memory.find(watched.at, watched.bytes);
+  return found ? std::string_view(reinterpret_cast<const char*>(found), watched.bytes) : std::string_view();
 }
 
-// Returns the images that are bound whole, in the order of their bindings.
-std::vector<WatchedImage> images_of(const pipeline::Capsule& capsule, const mem::AddressSpace& memory) {
-  std::vector<WatchedImage> out;
-  for (const pipeline::BoundResources& bound : capsule.bindings) {
-    const auto* images = std::get_if<std::vector<exec::ImageView>>(&bound.elements);
-    for (size_t i = 0; images && i < images->size(); ++i) {
-      const exec::ImageView& view = (*images)[i];
-      const std::string number = images->size() > 1 ? fmt::format("-{}", i) : "";
-      const std::string name =
-          fmt::format("set{}-binding{}{}", bound.place.first, bound.place.second, number);
-      const bool is_whole = view.is_bound && view.stored_layers == view.layers && view.first_layer == 0;
-      const bool is_picture = view.shape != isa::ImageShape::Buffer && !texels_of(memory, view).empty();
-      if (is_whole && is_picture)
-        out.push_back({name + ".png", name, view, content_hash(texels_of(memory, view))});
-    }
+// Gathers what a launch may write, each place once: images that are bound whole, buffers that are bound, in
+// the order of their bindings, and allocations that shaders can reach by address alone.
+class WatchList {
+ public:
+  explicit WatchList(const mem::AddressSpace& memory) : memory_(memory) {}
+
+  void add_bound(const pipeline::BoundResources& bound) {
+    if (const auto* images = std::get_if<std::vector<exec::ImageView>>(&bound.elements))
+      for (size_t i = 0; i < images->size(); ++i) add_image((*images)[i], name_of(bound, images->size(), i));
+    if (const auto* buffers = std::get_if<std::vector<pipeline::BufferRange>>(&bound.elements))
+      for (size_t i = 0; i < buffers->size(); ++i)
+        add_bytes((*buffers)[i].address, (*buffers)[i].bytes, name_of(bound, buffers->size(), i));
   }
-  return out;
+
+  void add_rest(const pipeline::SavedMemory& memory) {
+    const std::set<uint64_t> bound = slots_;
+    for (const auto& window : memory.windows)
+      if (!bound.count(window.slot))
+        add_bytes(window.slot << mem::AddressSpace::kShift, window.bytes,
+                  fmt::format("allocation-{}", window.slot));
+  }
+
+  std::vector<Watched> all;
+
+ private:
+  static std::string name_of(const pipeline::BoundResources& bound, size_t count, size_t i) {
+    const std::string number = count > 1 ? fmt::format("-{}", i) : "";
+    return fmt::format("set{}-binding{}{}", bound.place.first, bound.place.second, number);
+  }
+
+  void add_image(const exec::ImageView& view, const std::string& name) {
+    if (!view.is_bound) return;
+    slots_.insert(view.base >> mem::AddressSpace::kShift);
+    if (view.stored_layers != view.layers || view.first_layer || view.shape == isa::ImageShape::Buffer)
+      return;
+    add({name + ".png", name, view, view.base, view.bytes_before_level(1)});
+  }
+
+  void add_bytes(Address at, uint64_t bytes, const std::string& name) {
+    if (!bytes) return;  // It is a structure, or nothing is bound.
+    slots_.insert(at >> mem::AddressSpace::kShift);
+    add({name + ".bin", name, std::nullopt, at, bytes});
+  }
+
+  void add(Watched watched) {
+    const std::string_view bytes = bytes_of(memory_, watched);
+    if (bytes.empty() || !seen_.insert({watched.at, watched.bytes}).second) return;
+    watched.before = content_hash(bytes);
+    all.push_back(std::move(watched));
+  }
+
+  const mem::AddressSpace& memory_;
+  std::set<uint64_t> slots_;
+  std::set<std::pair<Address, uint64_t>> seen_;
+};
+
+std::vector<Watched> watch(const pipeline::Capsule& capsule, const mem::AddressSpace& memory) {
+  WatchList list(memory);
+  for (const pipeline::BoundResources& bound : capsule.bindings) list.add_bound(bound);
+  list.add_rest(capsule.memory);
+  return std::move(list.all);
 }
 
-std::vector<std::string> keep_images(const std::vector<WatchedImage>& images, const mem::AddressSpace& memory,
-                                     const report::RunDirectory& directory, report::RunInfo& info) {
+std::vector<std::string> keep_changed(const std::vector<Watched>& all, const mem::AddressSpace& memory,
+                                      const report::RunDirectory& directory, report::RunInfo& info) {
   std::vector<std::string> lines;
-  for (const WatchedImage& each : images) {
-    const std::string_view texels = texels_of(memory, each.view);
-    if (content_hash(texels) == each.before) continue;
-    directory.write(each.file, image_file(each.file, each.view, std::as_bytes(std::span(texels))));
-    info.saved.push_back(each.file), info.outputs.push_back({each.file, each.name, true});
+  for (const Watched& each : all) {
+    const std::string_view bytes = bytes_of(memory, each);
+    if (content_hash(bytes) == each.before) continue;
+    if (each.image)
+      directory.write(each.file, image_file(each.file, *each.image, std::as_bytes(std::span(bytes))));
+    else
+      directory.write(each.file, std::string(bytes));
+    info.saved.push_back(each.file), info.outputs.push_back({each.file, each.name, each.image.has_value()});
     lines.push_back(fmt::format("{:<10} {}", each.name, directory.path_of(each.file)));
   }
   return lines;
@@ -102,7 +153,7 @@ Exit run_capsule(const Session& session, const std::string& what, const LaunchOp
   exec::PrintLog prints(options.print_limit);
   world.world().prints = &prints;
   world.world().on_fault = options.on_fault;
-  const std::vector<WatchedImage> images = images_of(capsule, world.memory());
+  const std::vector<Watched> watched = watch(capsule, world.memory());
 
   report::RunInfo info = describe_run(session, capsule, world.world(), job.gpu, options);
   const auto& [x, y, z] = world.world().launch_size;
@@ -121,7 +172,7 @@ Exit run_capsule(const Session& session, const std::string& what, const LaunchOp
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
-        files = keep_images(images, world.memory(), directory, info);
+        files = keep_changed(watched, world.memory(), directory, info);
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
