@@ -74,7 +74,8 @@ void Host::launch_ptx(const std::string& name, const pipeline::KernelGrid& grid,
 }
 
 void Host::run(const std::string& kernel, const std::array<uint32_t, 3>& groups, const exec::World& world) {
-  pipeline::RenderResult result = device_.run(world, setup_.mode, setup_.watch);
+  pipeline::RenderResult result =
+      setup_.run ? setup_.run(world) : device_.run(world, setup_.mode, setup_.watch);
   launches_.push_back({kernel, groups, result.cycles, result.warp_instructions, result.lane_instructions});
   const pipeline::LaunchEnd end = result.end;
   if (launches_.size() == 1)

@@ -5,44 +5,43 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <string>
 
 #include "base/num_lanes.h"
-#include "core/coalesce.h"
-#include "core/core_cell.h"
-#include "core/residency.h"
+#include "pipeline/interval/interval_core.h"
 
 namespace glint::pipeline {
 
 using core::Finish;
-using isa::Effect;
-using isa::Space;
 
 namespace {
 
 // Cores take turns of this many cycles, which is short compared with a miss and long compared with an event.
 constexpr Cycle kTurn = 48;
+// In launches with blocks, an interval ends where the warp would wait past this many cycles. Then accesses
+// and barriers of a core's warps come nearly in order of time.
+constexpr Cycle kInterval = 48;
 
-// Refuses everything that the model would silently pass over, all at once.
-const exec::World& checked(const GpuParams& params, const exec::World& world) {
+void note_policy(std::string& message, std::string_view key, const auto& choice) {
+  if (!choice.is_in_interval_model())
+    message += fmt::format("the interval model does not know {} = \"{}\"\n", key, choice.name);
+}
+
+// Returns what the model lacks of the RT unit.
+std::string unknown_of_rays(const GpuParams& params) {
   const rt::Params& rt = params.rt;
   const std::pair<bool, std::string_view> unknown[] = {
-      {world.block_size[0] != 0, "launches with blocks of threads"},
       {rt.unit != rt::kHardware, "rays that code walks (rt.unit = \"software\")"},
       {rt.result_store || rt.shortcuts.fetch_headers || rt.shortcuts.fetch_descriptors ||
            rt.shortcuts.store_each_hit,
        "rt.result_store and the accesses of rt.shortcuts"},
-      {params.core.local_by_thread, "rays in memory (core.local_by_thread)"},
-      {rt.oracle.fetch_hits || rt.oracle.any_lane, "rt.oracle"},
-      {!params.core.fetch.perfect || !params.core.constant.perfect,
-       "caches of instructions and constants (core.fetch.perfect = false or core.constant.perfect = false)"}};
+      {rt.oracle.fetch_hits || rt.oracle.any_lane, "rt.oracle"}};
   std::string message;
   for (const auto& [is_there, what] : unknown)
     if (is_there) message += fmt::format("the interval model does not know {}\n", what);
   const auto check_policy = [&message](std::string_view key, const auto& choice) {
-    if (!choice.is_in_interval_model())
-      message += fmt::format("the interval model does not know {} = \"{}\"\n", key, choice.name);
+    note_policy(message, key, choice);
   };
-  check_policy("core.reorder", params.core.reorder);
   check_policy("rt.any_hit", rt.any_hit);
   check_policy("rt.scheduler", rt.scheduler);
   check_policy("rt.coalescing", rt.coalescing);
@@ -52,133 +51,175 @@ const exec::World& checked(const GpuParams& params, const exec::World& world) {
   check_policy("rt.entry", rt.entry);
   check_policy("rt.leaf_filter", rt.leaf_filter);
   check_policy("rt.prefetch", rt.prefetch);
-  check_policy("memory.noc.topology", params.memory.noc.topology);
-  if (!message.empty())
-    throw UnsupportedError(message + "  note: `glint model --statistics-only` leaves it out");
+  return message;
+}
+
+bool traces_rays(const exec::Image& image) {
+  return std::ranges::any_of(image.code,
+                             [](const exec::Step& step) { return step.row->klass == isa::Class::Rt; });
+}
+
+// Refuses everything that the model would silently pass over, all at once.
+const exec::World& checked(const GpuParams& params, const exec::World& world) {
+  std::string message;
+  if (params.core.local_by_thread)
+    message += "the interval model does not know rays in memory (core.local_by_thread)\n";
+  if (!params.core.fetch.perfect || !params.core.constant.perfect)
+    message +=
+        "the interval model does not know caches of instructions and constants (core.fetch.perfect = false "
+        "or core.constant.perfect = false)\n";
+  note_policy(message, "core.reorder", params.core.reorder);
+  note_policy(message, "memory.noc.topology", params.memory.noc.topology);
+  if (traces_rays(*world.image)) message += unknown_of_rays(params);
+  if (!message.empty()) throw UnsupportedError(message);
   return world;
 }
 
 }  // namespace
 
-struct IntervalMachine::Core {
-  Core(const GpuParams& params, const exec::World& world, MemoryModel& memory, uint32_t core_index,
-       uint32_t slots)
-      : index(core_index),
-        rays(params.rt, *world.memory, memory, core_index),
-        warps(slots),
-        issue(params.core.schedulers),
-        lines(params.memory.line),
-        local(core::CoreCell::local_layout(
-            params.core, world, world.memory->reserve(core::CoreCell::local_bytes(params.core, world)))) {}
-
-  uint32_t index;
-  RayModel rays;
-  std::vector<exec::WarpContext> warps;  // indexed by slot
-  std::vector<Cycle> issue;              // cycle in which each scheduler has issued all that it was given
-  double issue_work = 0;
-  core::LineList lines;
-  core::LocalLayout local;
-  std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
-  // Holds the cycles in which the registers of the running warp are ready.
-  std::array<Cycle, core::kScoreboardEntries> ready{};
-};
-
 IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& world)
+    : IntervalMachine(params, world,
+                      std::make_unique<MemoryModel>(params.memory, params.cores, params.clock_mhz), nullptr,
+                      0) {
+}
+
+IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& world, MemoryModel& memory,
+                                 Cycle begin)
+    : IntervalMachine(params, world, nullptr, &memory, begin) {
+}
+
+IntervalMachine::IntervalMachine(const GpuParams& params, const exec::World& world,
+                                 std::unique_ptr<MemoryModel> own, MemoryModel* memory, Cycle begin)
     : params_(params),
       world_(checked(params, world)),
+      has_blocks_(world.block_size[0] != 0),
       executor_(world),
       table_(*world.image, params.core),
-      memory_(params.memory, params.cores, params.clock_mhz) {
-  const uint32_t slots = core::residency(params.core, core::CoreCell::needs_of(world)).warps;
+      own_memory_(std::move(own)),
+      memory_(memory ? *memory : *own_memory_),
+      reserves_(*world.memory),
+      begin_(begin),
+      end_(begin) {
+  const core::Residency residency = core::residency(params.core, core::CoreCell::needs_of(world));
   for (uint32_t i = 0; i < params.cores; ++i)
-    cores_.push_back(std::make_unique<Core>(params, world, memory_, i, slots));
+    cores_.push_back(std::make_unique<Core>(params, world, memory_, i, residency,
+                                            reserves_.take(core::CoreCell::local_bytes(params.core, world))));
 }
 
 IntervalMachine::~IntervalMachine() = default;
 
-// Launches the next warp, if there is one left.
-bool IntervalMachine::launch(Core& core, uint32_t slot, Cycle at) {
-  if (next_warp_ == executor_.num_warps()) return false;
-  executor_.start(core.warps[slot], next_warp_++);
-  run_interval(core, slot, at + params_.core.warp_launch_latency);
+// Launches the next block, or warp of a launch without blocks, if there is one left.
+bool IntervalMachine::launch(Core& core, uint32_t place, Cycle at) {
+  if (next_block_ == executor_.num_blocks()) return false;
+  const Cycle begin = at + params_.core.warp_launch_latency;
+  if (!has_blocks_) {
+    executor_.start(core.warps[place].context, next_block_++);
+    run_interval(core, place, begin);
+    return true;
+  }
+  executor_.start(core.blocks[place], next_block_++);
+  const uint32_t warps = core.left[place] = executor_.warps_per_block();
+  for (uint32_t i = 0; i < warps; ++i) {
+    const uint32_t slot = place * warps + i;
+    Core::Warp& warp = core.warps[slot];
+    executor_.start(warp.context, core.blocks[place], i,
+                    {slot, uint32_t(core.warps.size()), core.index, params_.cores});
+    warp.ready.fill(0);
+    core.events.push({begin, slot, Next::Run});
+  }
   return true;
 }
 
-// Runs a warp from `at` up to its next rays or its end, as if it were alone with its caches.
+// Runs a warp from `at` up to its next wait or its end, as if it were alone with its caches.
 void IntervalMachine::run_interval(Core& core, uint32_t slot, Cycle at) {
-  exec::WarpContext& warp = core.warps[slot];
-  core.ready.fill(0);
-  std::array<double, core::kNumPipes> pipe_free{}, work{};
-  double slots = 0;
+  if (!has_blocks_) core.warps[slot].ready.fill(0);
+  slots_ = 0;
+  work_ = {};
   Cycle now = at;
-  bool finished = false;
-  while (!finished && !warp.waiting_for_rays) {
+  const Next next = execute(core, slot, now, has_blocks_ ? at + kInterval : kNever);
+  // The scheduler has to issue the work of its other warps first. It issues one instruction per cycle, and
+  // each pipe has its interval.
+  Cycle& issue = core.issue[slot % core.issue.size()];
+  issue = std::max(issue, at) + Cycle(std::max(slots_, *std::ranges::max_element(work_)));
+  core.issue_work += slots_ / double(core.issue.size());
+  if (next == Next::Barrier)
+    come_to_barrier(core, slot, std::max(now, issue));
+  else
+    core.events.push({std::max(now, issue), slot, next});
+}
+
+// Executes up to the next wait. `now` becomes the cycle from which the warp could go on.
+IntervalMachine::Next IntervalMachine::execute(Core& core, uint32_t slot, Cycle& now, Cycle until) {
+  exec::WarpContext& warp = core.warps[slot].context;
+  std::array<Cycle, core::kScoreboardEntries>& ready = core.warps[slot].ready;
+  std::array<double, core::kNumPipes> pipe_free{};
+  for (;;) {
     const uint32_t pc = warp.simt.pc;
     const core::IssueRow& row = table_.row(pc);
-    for (const uint16_t use : table_.uses(row)) now = std::max(now, core.ready[use]);
+    for (const uint16_t use : table_.uses(row)) now = std::max(now, ready[use]);
     now = std::max(now, Cycle(pipe_free[size_t(row.pipe)]));
+    if (now > until) return Next::Run;
     const exec::Issued issued = executor_.execute(warp, now);
     if (executor_.fault())
       throw Error(executor_.fault()->exit(), executor_.passed().with(*executor_.fault()));
     if (warp.instructions > params_.core.instruction_budget) [[unlikely]]
       throw Error(Exit::Fault, executor_.passed().with(
                                    exec::no_end_in_sight(world_, warp, pc, params_.core.instruction_budget)));
-    finished = issued.finished;
     ++estimate_.instructions;
     estimate_.lanes += num_lanes(issued.lanes);
-    slots += table_.issues(pc);
+    slots_ += table_.issues(pc);
     const double interval = double(row.interval) / core::OpTime::kParts;
     pipe_free[size_t(row.pipe)] = double(now) + interval;
-    work[size_t(row.pipe)] += interval;
+    work_[size_t(row.pipe)] += interval;
     Cycle done = now + row.latency;
     if (row.finish == Finish::Memory || row.finish == Finish::CallRecord)
       done = access(core, slot, issued, row, now);
-    for (const uint16_t def : table_.defs(row)) core.ready[def] = done;
+    for (const uint16_t def : table_.defs(row)) ready[def] = done;
     const bool holds = row.finish == Finish::Control || row.finish == Finish::CallRecord ||
-                       row.finish == Finish::Fence || row.finish == Finish::Barrier;
+                       row.finish == Finish::Fence || (row.finish == Finish::Barrier && !has_blocks_);
     now = holds ? done : now + table_.issues(pc);
+    if (issued.finished) return Next::End;
+    if (warp.waiting_for_rays) return Next::Rays;
+    if (row.finish == Finish::Barrier && has_blocks_) return Next::Barrier;
   }
-  // The scheduler has to issue the work of its other warps first. It issues one instruction per cycle, and
-  // each pipe has its interval.
-  Cycle& issue = core.issue[slot % core.issue.size()];
-  const double busy = std::max(slots, *std::ranges::max_element(work));
-  issue = std::max(issue, at) + Cycle(busy);
-  core.issue_work += slots / double(core.issue.size());
-  core.events.push({std::max(now, issue), slot, finished});
 }
 
-// Returns when the data that an instruction loads are there. What it stores costs the warp nothing more.
-Cycle IntervalMachine::access(Core& core, uint32_t slot, const exec::Issued& issued,
-                              const core::IssueRow& row, Cycle at) {
-  core.lines.clear();
-  const isa::Access& addresses = core.warps[slot].regs.access;
-  const auto bytes = uint32_t(issued.row->memory.bytes * issued.row->memory.count);
-  const Cycle begin = at + (row.is_texture ? params_.core.units.tex : params_.core.units.lsu).latency;
-  LaneMask local = 0;
-  if (row.is_texture) {
-    for (const auto& texels : executor_.texels().rows())
-      for_each_lane(issued.lanes, [&](int lane) {
-        if (texels[size_t(lane)] != exec::TexelList::kNone)
-          core.lines.add(world_.memory->physical(texels[size_t(lane)]), 4, lane);
-      });
-  } else if (row.finish == Finish::CallRecord) {
-    coalesce_global(core.lines, *world_.memory, addresses, issued.lanes, mem::kSectorBytes);
-  } else {
-    local = executor_.lanes_in(Space::Local);
-    coalesce_local(core.lines, core.local, slot, addresses, local, bytes);
-    coalesce_global(core.lines, *world_.memory, addresses, executor_.lanes_in(Space::Global), bytes);
+// Takes a warp that has executed a bar.* into the barrier unit, which takes one after another.
+void IntervalMachine::come_to_barrier(Core& core, uint32_t slot, Cycle at) {
+  Core::Warp& warp = core.warps[slot];
+  core.barrier = std::max(core.barrier, at) + params_.core.units.barrier.interval;
+  warp.arrived = core.barrier;
+  warp.waits = true;
+  pass_barrier(core, slot, core.barrier);
+}
+
+// Lets the warps of a block go on whose barrier has opened when warp `slot` came to it or ended at `at`. The
+// pass may have executed the last warp to come before one that it lets wait, so the latest of them counts.
+void IntervalMachine::pass_barrier(Core& core, uint32_t slot, Cycle at) {
+  const uint32_t warps = executor_.warps_per_block(), first = slot / warps * warps;
+  const auto goes_on = [&](const Core::Warp& warp) { return warp.waits && !warp.context.waiting_at_barrier; };
+  Cycle latest = at;
+  for (uint32_t i = first; i < first + warps; ++i)
+    if (goes_on(core.warps[i])) latest = std::max(latest, core.warps[i].arrived);
+  for (uint32_t i = first; i < first + warps; ++i) {
+    if (!goes_on(core.warps[i])) continue;
+    core.warps[i].waits = false;
+    core.events.push({latest + params_.core.units.barrier.latency, i, Next::Run});
   }
-  const bool is_write = isa::only_writes_memory(issued.row->effect);
-  Cycle done = std::max<Cycle>(begin, at + row.latency);
-  Cycle sent = begin;
-  for (const core::LineSectors& line : core.lines.lines()) {
-    if (is_write)
-      memory_.write(core.index, line.line, line.sectors, sent, local != 0);
-    else
-      done = std::max(done, memory_.read(core.index, line.line, line.sectors, sent, Asker::Shader));
-    ++sent;
+}
+
+void IntervalMachine::end_warp(Core& core, uint32_t slot, Cycle at) {
+  end_ = std::max(end_, at);
+  ++num_ended_;
+  if (!has_blocks_) {
+    launch(core, slot, at);
+    return;
   }
-  return done;
+  const uint32_t place = slot / executor_.warps_per_block();
+  if (--core.left[place] == 0)
+    launch(core, place, at);
+  else
+    pass_barrier(core, slot, at);
 }
 
 Cycle IntervalMachine::next(const Core& core) const {
@@ -192,24 +233,24 @@ void IntervalMachine::advance(Core& core) {
   } else {
     const Event event = core.events.top();
     core.events.pop();
-    if (!event.finished) {
-      core.rays.submit(event.at + params_.core.units.rt_unit.latency, event.slot, core.warps[event.slot]);
-    } else {
-      end_ = std::max(end_, event.at);
-      ++num_ended_;
-      launch(core, event.slot, event.at);
-    }
+    if (event.next == Next::Run)
+      run_interval(core, event.slot, event.at);
+    else if (event.next == Next::Rays)
+      core.rays.submit(event.at + params_.core.units.rt_unit.latency, event.slot,
+                       core.warps[event.slot].context);
+    else
+      end_warp(core, event.slot, event.at);
   }
   for (const auto& [slot, at] : core.rays.take_done()) {
-    executor_.finish_rays(core.warps[slot]);
+    executor_.finish_rays(core.warps[slot].context);
     run_interval(core, slot, at + 1);
   }
 }
 
 IntervalEstimate IntervalMachine::run(const std::function<void(uint64_t, uint64_t)>& progress) {
-  const uint32_t slots = uint32_t(cores_[0]->warps.size());
-  for (uint32_t slot = 0; slot < slots; ++slot)  // one warp per core in turn, as the dispatcher does
-    for (const auto& core : cores_) launch(*core, slot, params_.core.launch_latency);
+  const uint32_t places = uint32_t(cores_[0]->blocks.size());
+  for (uint32_t place = 0; place < places; ++place)  // one block per core in turn, as the dispatcher does
+    for (const auto& core : cores_) launch(*core, place, begin_ + params_.core.launch_latency);
   for (Cycle now = 0; now != kNever;) {
     now = kNever;
     for (const auto& core : cores_) now = std::min(now, next(*core));
@@ -224,14 +265,10 @@ IntervalEstimate IntervalMachine::run(const std::function<void(uint64_t, uint64_
 
 IntervalEstimate IntervalMachine::collect() const {
   IntervalEstimate out = estimate_;
-  out.cycles = end_;
+  out.cycles = end_ - begin_;
   for (const auto& core : cores_) {
     const RayModelCounts& rays = core->rays.counts();
-    out.rays.rays += rays.rays;
-    out.rays.nodes += rays.nodes;
-    out.rays.requests += rays.requests;
-    out.rays.traces += rays.traces;
-    out.rays.trace_cycles += rays.trace_cycles;
+    out.rays.add(rays);
     out.issue = std::max(out.issue, core->issue_work);
     out.rt_port = std::max(out.rt_port, core->rays.port_work());
     out.rt_tests = std::max(out.rt_tests, core->rays.test_work());
@@ -244,6 +281,25 @@ IntervalEstimate IntervalMachine::collect() const {
   out.l2_slices = memory_.l2_work();
   out.dram_buses = memory_.dram_work();
   return out;
+}
+
+IntervalEstimate IntervalDevice::run(const exec::World& world, bool warm) {
+  memory_.begin_launch(!warm);
+  IntervalMachine machine(params_, world, memory_, now_);
+  const IntervalEstimate out = machine.run({});
+  now_ += out.cycles;
+  sum_.add(out);
+  return out;
+}
+
+void IntervalEstimate::add(const IntervalEstimate& later) {
+  cycles += later.cycles;
+  instructions += later.instructions;
+  lanes += later.lanes;
+  rays.add(later.rays);
+  issue += later.issue, rt_port += later.rt_port, rt_tests += later.rt_tests, rt_slots += later.rt_slots;
+  l1 = later.l1, l2 = later.l2, dram_sectors = later.dram_sectors;
+  l1_ports = later.l1_ports, l2_slices = later.l2_slices, dram_buses = later.dram_buses;
 }
 
 std::array<std::pair<std::string_view, double>, 7> IntervalEstimate::bounds() const {

@@ -16,6 +16,11 @@ double packet_cycles(uint32_t sectors, uint32_t bytes_per_cycle) {
   return double(mem::kHeaderBytes + sectors * mem::kSectorBytes) / bytes_per_cycle;
 }
 
+void empty(mem::TagArray& tags) {
+  for (uint32_t slot = 0; slot < tags.num_lines(); ++slot)
+    if (tags.line(slot).used()) tags.drop(slot, 0xff);
+}
+
 template <class List, class Work>
 double most(const List& list, Work work) {
   double out = 0;
@@ -107,7 +112,7 @@ Cycle MemoryModel::read_bytes(uint32_t core, Address at, uint32_t bytes, Cycle w
   return ready;
 }
 
-void MemoryModel::write(uint32_t core_index, Address line, uint8_t sectors, Cycle at, bool is_local) {
+Cycle MemoryModel::write(uint32_t core_index, Address line, uint8_t sectors, Cycle at, bool is_local) {
   Core& core = cores_[core_index];
   const Cycle begin = core.port.take(at, 1.0 / params_.l1.ports);
   if (is_local ? params_.l1.local_write_back : params_.l1.global_write_back) {
@@ -115,12 +120,32 @@ void MemoryModel::write(uint32_t core_index, Address line, uint8_t sectors, Cycl
     if (found.valid == 0) core.l1.fills[core.l1.tags.slot_of(found)] = {};
     found.valid |= sectors;
     found.dirty |= sectors;
-    return;
+    return begin;
   }
   const uint32_t slot = core.l1.tags.find(line);
   if (slot != mem::TagArray::kNone && params_.l1.write_evict) core.l1.tags.drop(slot, sectors);
   if (params_.l1.write_allocate) line_of(core, line, begin).valid |= sectors;
-  write_below(core, line, sectors, begin + params_.l1.miss_latency);
+  return write_below(core, line, sectors, begin + params_.l1.miss_latency);
+}
+
+Cycle MemoryModel::change(uint32_t core_index, Address line, uint8_t sectors, uint32_t turns, Cycle at) {
+  Core& core = cores_[core_index];
+  const Cycle begin = core.port.take(at, 1.0 / params_.l1.ports);
+  const uint32_t index = partitions_.slice(line);
+  slices_[index].service.take(begin + params_.l1.miss_latency, double(turns) * params_.l2.atomic_interval);
+  const Cycle done = fetch(core, line, sectors, begin + params_.l1.miss_latency);
+  Slice& slice = slices_[index];
+  if (const uint32_t slot = slice.l2.tags.find(line); slot != mem::TagArray::kNone)
+    slice.l2.tags.line(slot).dirty |= sectors;
+  return done + Cycle(turns) * params_.l2.atomic_interval;
+}
+
+void MemoryModel::begin_launch(bool cold) {
+  for (Core& core : cores_) empty(core.l1.tags);
+  if (!cold) return;
+  for (Slice& slice : slices_) empty(slice.l2.tags);
+  for (Channel& channel : channels_)
+    for (Bank& bank : channel.banks) bank.row = -1;
 }
 
 Cycle MemoryModel::fetch(Core& core, Address line, uint8_t sectors, Cycle at) {
@@ -147,7 +172,7 @@ Cycle MemoryModel::fetch(Core& core, Address line, uint8_t sectors, Cycle at) {
   return core.reply.take(replied, own) + Cycle(own) + 1;
 }
 
-void MemoryModel::write_below(Core& core, Address line, uint8_t sectors, Cycle at) {
+Cycle MemoryModel::write_below(Core& core, Address line, uint8_t sectors, Cycle at) {
   const uint32_t index = partitions_.slice(line), n = count(sectors);
   const Cycle sent = core.request.take(at, packet_cycles(n, params_.noc.core_request_bytes));
   const Cycle served = slices_[index].service.take(sent + params_.noc.request_latency,
@@ -156,6 +181,7 @@ void MemoryModel::write_below(Core& core, Address line, uint8_t sectors, Cycle a
   if (found.valid == 0) slices_[index].l2.fills[slices_[index].l2.tags.slot_of(found)] = {};
   found.valid |= sectors;
   found.dirty |= sectors;
+  return sent;
 }
 
 Cycle MemoryModel::from_dram(uint32_t slice, Address line, uint32_t num_sectors, Cycle at) {

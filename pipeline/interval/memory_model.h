@@ -33,8 +33,13 @@ class MemoryModel {
   Cycle read_bytes(uint32_t core, Address at, uint32_t bytes, Cycle when, Asker asker);
   // Returns when the L1 can take an access.
   Cycle port_free(uint32_t core, Cycle at) const { return cores_[core].port.begin(at); }
-  // Writes sectors of a line. Nobody waits for a write.
-  void write(uint32_t core, Address line, uint8_t sectors, Cycle at, bool is_local);
+  // Writes sectors of a line, and returns when the L1 has got rid of them. No warp waits for that, but what
+  // comes behind it does when more packets wait than the L1 holds.
+  Cycle write(uint32_t core, Address line, uint8_t sectors, Cycle at, bool is_local);
+  // Changes sectors of a line in the L2, in so many turns. Returns when the old values are there.
+  Cycle change(uint32_t core, Address line, uint8_t sectors, uint32_t turns, Cycle at);
+  // Begins another launch, which finds the L1s empty, and the L2 and the rows of DRAM as they are, or `cold`.
+  void begin_launch(bool cold);
 
   const std::array<CacheCounts, 2>& l1() const { return l1_counts_; }  // indexed by Asker
   const CacheCounts& l2() const { return l2_counts_; }
@@ -79,7 +84,7 @@ class MemoryModel {
 
   // Returns when the data of a miss reach the L1.
   Cycle fetch(Core& core, Address line, uint8_t sectors, Cycle at);
-  void write_below(Core& core, Address line, uint8_t sectors, Cycle at);
+  Cycle write_below(Core& core, Address line, uint8_t sectors, Cycle at);
   Cycle from_dram(uint32_t slice, Address line, uint32_t num_sectors, Cycle at);
   mem::TagArray::Line& line_of(Slice& slice, uint32_t index, Address line, Cycle at);
   mem::TagArray::Line& line_of(Core& core, Address line, Cycle at);

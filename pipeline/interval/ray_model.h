@@ -20,6 +20,10 @@ namespace glint::pipeline {
 struct RayModelCounts {
   uint64_t rays = 0, nodes = 0, requests = 0, traces = 0;
   uint64_t trace_cycles = 0;  // cycles from a warp's entry to its last ray's end, summed
+  void add(const RayModelCounts& other) {
+    rays += other.rays, nodes += other.nodes, requests += other.requests, traces += other.traces;
+    trace_cycles += other.trace_cycles;
+  }
 };
 
 // Advances rays node by node. Rays of a warp that want the same node at the same time share its fetch, and

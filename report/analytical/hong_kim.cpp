@@ -80,6 +80,13 @@ HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name, dou
   return in;
 }
 
+HongKimInputs as_lumibench(HongKimInputs inputs) {
+  constexpr double kLoadedBytes = 32 * 4;
+  inputs.hit_latency = 0;
+  inputs.bytes = kLoadedBytes;
+  return inputs;
+}
+
 namespace {
 
 // Predicts a launch without memory instructions: warps compute in turns.

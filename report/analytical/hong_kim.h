@@ -60,6 +60,11 @@ HongKimResult hong_kim(const HongKimInputs& inputs);
 // is missing when the run has no such statistics, because it was not of the timing machine or did not finish.
 HongKimInputs hong_kim_inputs(const RunRecord& run, const std::string& name, double launches = 1);
 
+// Returns the inputs as LumiBench's paper takes them: it multiplies the latency of DRAM by the rate of L1
+// misses and changes nothing else. So hits take no time, and a memory instruction moves the bytes that a warp
+// loads with 4 bytes a lane, as on the GPU without caches that the model was made for.
+HongKimInputs as_lumibench(HongKimInputs inputs);
+
 // Returns names and values of inputs and results, in order, for tables.
 std::vector<std::pair<std::string, double>> hong_kim_columns(const HongKimResult& result);
 

@@ -57,7 +57,9 @@ struct RunInfo {
   std::string version, git, compiler;
   std::vector<std::pair<std::string, std::string>> plugins;  // their files and the hashes of their contents
   std::string scene, scene_form, scene_note, shader, config, mode;
-  std::string scene_file;  // of a scene that was read from a file: its path, as the command line has it
+  // The path of the file that says what is launched (a scene, a pipeline, kernels), as the command line has
+  // it; empty for what has no such file.
+  std::string scene_file;
   uint64_t scene_hash = 0, scene_triangles = 0, config_hash = 0;
   double scene_fraction = 1;  // fraction of the original's triangles
   // These are the parameters of the frame, in the order of the file. A dot in a key leads into a table. A

@@ -73,13 +73,41 @@ class Model(GlintTest):
         self.simulate("WKND_SH", "functional", "--mode", "functional")
         self.expect(2, ["functional", "timing machine"], "model", "functional")
 
-    def test_runs_of_kernels_are_modelled_by_their_statistics_with_or_without_reads(self):
-        done = self.glint("run", ROOT / "shaders/kernels/saxpy.toml", "--out", "saxpy")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.glint("model", "saxpy")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("saxpy is of the kernel 'saxpy': it is left out", done.stderr)
-        self.assertNotIn("interval", (self.folder / "saxpy/models.csv").read_text())
+    def near(self, name, delta, *words):
+        done = self.glint("model", name, *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        [row] = self.table(f"{name}/models.csv")
+        self.assertAlmostEqual(float(row["model:interval model"]) / float(row["cycles"]), 1, delta=delta, msg=name)
+
+    def test_the_interval_model_takes_programs_with_all_their_launches(self):
+        for name in ("bfs", "backprop", "streamcluster"):
+            self.assertEqual(self.glint("run", name, "--small", "--out", name, "--stats", "compact").returncode, 0)
+            self.near(name, 0.2)
+
+    def test_the_interval_model_takes_kernels_pipelines_and_their_lists(self):
+        self.write("t.comp", "#version 460\nlayout(local_size_x = 64) in;\nlayout(set = 0, binding = 0) buffer B { float v[]; };\n"
+                             "void main() { v[gl_GlobalInvocationID.x] *= 2.0; }\n")
+        runs = {"kernel": ROOT / "shaders/kernels/block_sums.toml", "shader": "t.comp", "list": ROOT / "examples/denoise/pipeline.toml"}
+        for name, what in runs.items():
+            done = self.glint("run", what, "--out", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.near(name, 0.2)
+        for name in ("shadow", "include"):
+            shutil.copytree(ROOT / "shaders" / name, self.folder / "own" / name)
+        self.simulate("WKND_SH", "folder", "--shader-dir", "own/shadow")
+        self.near("folder", 0.3, "--shader-dir", "own/shadow")
+
+    def test_what_the_interval_model_does_not_know_is_said_and_the_other_model_stays(self):
+        kernel = ROOT / "shaders/kernels/saxpy.toml"
+        for name, words, said in (("fetching", [kernel, "--set", "core.fetch.perfect=false"], "core.fetch.perfect"), ("unnamed", [kernel.with_suffix(".ptx"), "--launch", kernel], "does not name the file")):
+            self.assertEqual(self.glint("run", *words, "--out", name).returncode, 0)
+            done = self.glint("model", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertIn("left out", done.stderr)
+            self.assertNotIn("interval", (self.folder / name / "models.csv").read_text())
+
+    def test_kernels_without_reads_are_modelled(self):
         self.write("idle.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry idle()\n{\n  ret;\n}\n")
         self.write("idle.toml", 'kernel = "idle.ptx"\ngrid = 1\nblock = 32\n')
         done = self.glint("run", "idle.toml", "--out", "idle")

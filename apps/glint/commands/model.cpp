@@ -2,82 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
 #include "apps/glint/bench/tables.h"
-#include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
 #include "apps/glint/options/output.h"
 #include "apps/glint/options/run_files.h"
-#include "apps/glint/options/shader_options.h"
+#include "apps/glint/run/relaunch.h"
 #include "apps/glint/session.h"
 #include "base/regular_file.h"
 #include "pipeline/interval/interval_machine.h"
-#include "pipeline/scene_world.h"
-#include "pipeline/structure_cache.h"
+#include "pipeline/run_stats.h"
 #include "report/analytical/hong_kim.h"
 #include "report/analytical/model_table.h"
 #include "report/files/csv_table.h"
 #include "report/files/run_directory.h"
+#include "report/files/run_record.h"
 #include "report/terminal/progress.h"
-#include "scenes/overrides.h"
 
 namespace glint::app {
 namespace {
 
 struct ModelOptions {
   std::vector<std::string> runs;
-  std::string out, assets;
+  std::string out;
   bool statistics_only = false, inputs = false;
-  ShaderOptions shaders;
+  RelaunchOptions again;
 };
 
 using Columns = std::vector<std::pair<std::string, double>>;
-
-double fact(const report::RunRecord& run, const std::string& directory, const std::string& name) {
-  if (const std::optional<double> value = run.fact(name)) return *value;
-  throw UserError({directory + "/run.json"}, fmt::format("has no '{}'", name),
-                  "the interval model takes runs of scenes; --statistics-only leaves it out");
-}
-
-// Returns the name or the file of a run's scene.
-std::string scene_of(const report::RunRecord& run, const std::string& directory) {
-  const std::string file = run.text("scene.file");
-  if (file.empty()) return run.text("scene.name");
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(file, failed))
-    throw UserError({directory + "/run.json"},
-                    fmt::format("the file of the run's scene, '{}', is not here", file),
-                    "call `glint model` from the folder that the run was called from");
-  return file;
-}
-
-// Returns the job of the launch that a run made.
-pipeline::RenderJob job_of(const Session& session, const ModelOptions& options, const report::RunRecord& run,
-                           const std::string& directory) {
-  const std::string shader = run.text("shader");
-  const WorkloadInfo& workload = find_workload(shader);
-  pipeline::RenderJob job;
-  job.gpu = read_config(session.resources, directory + "/config.toml", {});
-  job.workload = workload.workload;
-  for (const scenes::RenderParam& p : scenes::RenderParams::params())
-    job.frame.*p.field = uint32_t(p.is_optional ? run.fact(std::string(p.key)).value_or(0)
-                                                : fact(run, directory, std::string(p.key)));
-  job.shader_dir = session.resources.shader_dir(std::string(workload.folder));
-  job.scene = scenes::load_scene(scene_of(run, directory), {options.assets, false, {}});
-  scenes::override_scene(job.scene, run.texts_in("overrides"));
-  if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))
-    throw UserError(
-        {directory + "/run.json"},
-        fmt::format("the run's scene is '{}', and here it is '{}'", run.text("scene.form"), job.scene.form),
-        run.text("scene.file").empty() ? "--assets names the folder that the run was given"
-                                       : "the file has changed since, or the run had --instancing");
-  return job;
-}
 
 Columns columns_of(const pipeline::IntervalEstimate& estimate, double seconds) {
   Columns out = {{"interval_rays", double(estimate.rays.rays)},
@@ -97,30 +53,35 @@ Columns columns_of(const pipeline::IntervalEstimate& estimate, double seconds) {
   return out;
 }
 
+// Runs every launch of a run through the interval model, and returns the predicted cycles of all.
 double run_interval(const Session& session, const ModelOptions& options, const report::RunRecord& run,
                     const std::string& directory, Columns& columns) {
-  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
-  const std::unique_ptr<pipeline::StructureCache> structures =
-      open_structure_cache(options.shaders, session.plugins);
-  pipeline::RenderJob job = job_of(session, options, run, directory);
-  job.glsl = glsl_options(options.shaders, cache.get());
-  job.structure_cache = structures.get();
-  pipeline::SceneWorld scene(job);
-  pipeline::IntervalMachine machine(job.gpu, scene.world);
-  const auto begin = std::chrono::steady_clock::now();
-  const pipeline::IntervalEstimate estimate = machine.run({});
-  const Columns found =
-      columns_of(estimate, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  const pipeline::GpuParams gpu = read_config(session.resources, directory + "/config.toml", {});
+  pipeline::IntervalDevice device(gpu);
+  double seconds = 0;
+  relaunch(session, options.again, run, directory, gpu, [&](const exec::World& world, bool warm) {
+    const auto begin = std::chrono::steady_clock::now();
+    const pipeline::IntervalEstimate estimate = device.run(world, warm);
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    pipeline::RenderResult out;
+    out.cycles = estimate.cycles;
+    out.warp_instructions = estimate.instructions;
+    out.lane_instructions = estimate.lanes;
+    out.stats = std::make_unique<pipeline::RunStats>(pipeline::FunctionalCounts{});
+    return out;
+  });
+  const pipeline::IntervalEstimate& sum = device.sum();
+  const Columns found = columns_of(sum, seconds);
   columns.insert(columns.end(), found.begin(), found.end());
   double simulated = 0;
   for (const double instructions : run.values("gpu.core[*].instructions")) simulated += instructions;
-  if (double(estimate.instructions) != simulated)
+  if (double(sum.instructions) != simulated)
     throw UserError(
         {directory},
-        fmt::format("the run executed {:.0f} warp instructions, and the same launch executed {} here",
-                    simulated, estimate.instructions),
+        fmt::format("the run executed {:.0f} warp instructions, and the same launches executed {} here",
+                    simulated, sum.instructions),
         "another version of Glint made the run, or it had options that run.json does not have: run it again");
-  return double(estimate.cycles);
+  return double(sum.cycles);
 }
 
 // Returns the number of launches of a run: those of a compute program stand in a table of their own.
@@ -135,10 +96,10 @@ report::ModelRow row_of(const Session& session, const ModelOptions& options, boo
   const report::RunRecord run = report::RunRecord::read(directory);
   tell_of_files({directory});
   report::ModelRow row{.workload = workload, .cycles = 0, .predicted = {}, .inputs = {}};
-  const report::HongKimResult model =
-      report::hong_kim(report::hong_kim_inputs(run, directory, launches_of(directory)));
+  const report::HongKimInputs inputs = report::hong_kim_inputs(run, directory, launches_of(directory));
+  const report::HongKimResult model = report::hong_kim(inputs);
   for (const double cycles : run.values("gpu.cycles")) row.cycles += cycles;
-  row.predicted.push_back(model.cycles);
+  row.predicted = {model.cycles, report::hong_kim(report::as_lumibench(inputs)).cycles};
   row.inputs = report::hong_kim_columns(model);
   if (with_interval) row.predicted.push_back(run_interval(session, options, run, directory, row.inputs));
   return row;
@@ -160,15 +121,38 @@ using Runs = std::vector<std::pair<std::string, std::string>>;  // workload and 
 // way.
 bool takes_interval(const Runs& runs) {
   for (const auto& [workload, directory] : runs) {
-    const report::RunRecord run = report::RunRecord::read(directory);
-    if (run.fact("rays.bounces")) continue;
-    fmt::print(stderr,
-               "note: the interval model takes runs of scenes, and {} is of {} '{}': it is left out\n",
-               directory, run.text("scene.form") == "pipeline" ? "the pipeline" : "the kernel",
-               run.text("scene.name"));
+    const std::string why = why_not_relaunched(report::RunRecord::read(directory));
+    if (why.empty()) continue;
+    fmt::print(stderr, "note: the interval model runs launches again, and of {} {}: it is left out\n",
+               directory, why);
     return false;
   }
   return true;
+}
+
+report::ModelTable table_of(const Session& session, const ModelOptions& options, const Runs& runs,
+                            bool with_interval) {
+  report::ModelTable models;
+  models.models = {"Hong and Kim", "as in LumiBench"};
+  if (with_interval) models.models.push_back("interval model");
+  report::Progress progress(session.on_terminal ? stdout : nullptr, "models", session.terminal);
+  for (const auto& [workload, directory] : runs) {
+    models.rows.push_back(row_of(session, options, with_interval, workload, directory));
+    progress.update(models.rows.size(), runs.size());
+  }
+  return models;
+}
+
+// Returns the predictions of all models that know all of the runs. Says on stderr why one does not.
+report::ModelTable models_of(const Session& session, const ModelOptions& options, const Runs& runs) {
+  const bool with_interval = !options.statistics_only && takes_interval(runs);
+  try {
+    return table_of(session, options, runs, with_interval);
+  } catch (const UnsupportedError& refused) {
+    if (!with_interval) throw;
+    fmt::print(stderr, "{}note: it is left out, as with --statistics-only\n", refused.what());
+    return table_of(session, options, runs, false);
+  }
 }
 
 // Returns the path of the table: in the one directory that was named, or beside several.
@@ -194,15 +178,7 @@ Exit model(const Session& session, const ModelOptions& options) {
   Runs runs;
   for (const std::string& folder : options.runs)
     for (const auto& run : finished_runs(folder)) runs.push_back(run);
-  const bool with_interval = !options.statistics_only && takes_interval(runs);
-  report::ModelTable models;
-  models.models = {"Hong and Kim"};
-  if (with_interval) models.models.push_back("interval model");
-  report::Progress progress(session.on_terminal ? stdout : nullptr, "models", session.terminal);
-  for (const auto& [workload, directory] : runs) {
-    models.rows.push_back(row_of(session, options, with_interval, workload, directory));
-    progress.update(models.rows.size(), runs.size());
-  }
+  const report::ModelTable models = models_of(session, options, runs);
   write_output(out, report::model_csv(models));
   if (out == "-") return Exit::Ok;
   write_output("", report::model_text(models) + (options.inputs ? inputs_text(models) : ""));
@@ -229,9 +205,13 @@ void add_model(Command app, Session& session) {
       .type_name("FILE");
   command.add_flag("--inputs", options->inputs, "Print the inputs of each run, too");
   command.add_flag("--statistics-only", options->statistics_only,
-                   "Compute Hong and Kim's model alone, without a pass over the scene");
-  add_assets_option(command, options->assets, ", as the runs were given it");
-  add_shader_options(command, options->shaders);
+                   "Compute Hong and Kim's model alone, without a pass over the launches");
+  add_assets_option(command, options->again.assets, ", as the runs were given it");
+  command
+      .add_option("--shader-dir", options->again.shader_dir,
+                  "Folder with the shaders, as the runs of scenes were given it")
+      .type_name("DIR");
+  add_shader_options(command, options->again.shaders);
   command.callback(
       [&session, options] { session.action = [&session, options] { return model(session, *options); }; });
 }

@@ -45,17 +45,6 @@ pipeline::PipelineDescription with_options(pipeline::PipelineDescription descrip
   return description;
 }
 
-pipeline::PipelineDescription read_description(const std::string& what, const frontend::GlslOptions& glsl) {
-  if (!is_shader(what)) return with_options(pipeline::read_pipeline(what), glsl);
-  const std::vector<std::string> shaders = pipeline::with_companions(what);
-  const std::filesystem::path path(what);
-  const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
-  pipeline::PipelineDescription out = pipeline::parse_pipeline(
-      pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
-  out.name = path.filename().string();
-  return with_options(std::move(out), glsl);
-}
-
 void check_saves(const pipeline::PipelineDescription& d) {
   Diagnostics errors;
   const auto check = [&](const std::vector<pipeline::Save>& saves, bool is_image) {
@@ -99,11 +88,12 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
 }
 
 report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world,
-                             const pipeline::GpuParams& gpu, const std::string& config,
-                             const std::string& mode) {
+                             const std::string& file, const pipeline::GpuParams& gpu,
+                             const std::string& config, const std::string& mode) {
   report::RunInfo info = new_run_info(session, gpu, config, mode);
   info.scene = world.description().name;
   info.scene_form = "pipeline";
+  info.scene_file = file;
   std::string everything;  // everything that the launch begins with
   for (const mem::AddressSpace::Slot& slot : world.memory().slots())
     if (slot.data) everything.append(reinterpret_cast<const char*>(slot.data), size_t(slot.bytes));
@@ -153,6 +143,17 @@ bool names_pipeline(const std::string& what) {
   return pipeline::read_toml(what).find("kernel") == nullptr;  // A kernel's launch file has this key.
 }
 
+pipeline::PipelineDescription read_description(const std::string& what, const frontend::GlslOptions& glsl) {
+  if (!is_shader(what)) return with_options(pipeline::read_pipeline(what), glsl);
+  const std::vector<std::string> shaders = pipeline::with_companions(what);
+  const std::filesystem::path path(what);
+  const std::string name = (path.parent_path() / ("defaults of " + path.filename().string())).string();
+  pipeline::PipelineDescription out = pipeline::parse_pipeline(
+      pipeline::default_description(shaders, path.parent_path().string(), glsl), name);
+  out.name = path.filename().string();
+  return with_options(std::move(out), glsl);
+}
+
 Exit run_pipeline(const Session& session, const std::string& what, const LaunchOptions& options) {
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   const pipeline::PipelineDescription description =
@@ -189,7 +190,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
                             description.launches[0].compute.empty() ? "rays" : "threads", mode, config);
   report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
                                                      : options.out);
-  report::RunInfo info = describe_run(session, world, job.gpu, config, mode);
+  report::RunInfo info = describe_run(session, world, what, job.gpu, config, mode);
   info.on_fault = exec::name_of(options.on_fault);
   info.compact = options.compact();
   setup::begin_directory(directory, info, job.gpu, title);

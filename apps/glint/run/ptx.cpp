@@ -95,6 +95,7 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", name, options.mode)
                                                      : options.out);
   report::RunInfo info = describe_run(session, options, job.gpu, name, kernels, file);
+  if (!what.ends_with(".ptx")) info.scene_file = what;
   setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files, launches;
   const pipeline::RenderResult result = run_recorded(

@@ -70,7 +70,7 @@ def analyse(runs: Runs, glint: str, out: TextIO) -> Findings:
             desktop = runs.path(one.name.replace(machine, DESKTOP_OF.get(machine, "none"))) / "metrics.csv"
             against = ["--against", str(desktop)] if desktop.is_file() else []
             call(one.name, "characterisation", ["characterize", str(table), "--out", place, *against])
-        only = ["--statistics-only"] if machine not in ("mobile", "desktop") or one.name.startswith("compute/") else []
+        only = ["--statistics-only"] if machine not in ("mobile", "desktop") else []  # The interval model knows no other of these machines.
         assets = ["--assets", one.words[one.words.index("--assets") + 1]] if "--assets" in one.words else []
         call(one.name, "models", ["model", str(runs.path(one.name)), *only, *assets, "--out", f"{place}/models.csv"])
     for machine in LARGE_MACHINES:

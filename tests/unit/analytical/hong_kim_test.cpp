@@ -115,6 +115,16 @@ TEST_CASE("LumiBench's adjustment multiplies the latency by the miss rate", "[an
   CHECK(hong_kim(in).memory_cycles == 1000);
 }
 
+TEST_CASE("LumiBench's inputs leave out the hits and load whole rows of a warp, whatever DRAM has seen",
+          "[analytical]") {
+  HongKimInputs in = small();
+  in.miss_rate = 0.25, in.hit_latency = 20, in.bytes = 1;
+  const HongKimInputs out = as_lumibench(in);
+  CHECK(out.memory_latency() == 100);
+  CHECK(out.bytes == 128);
+  CHECK(out.warps == in.warps);
+}
+
 TEST_CASE("A run without statistics of the timing machine is refused by name", "[analytical]") {
   RunRecord run;
   run.add_stats("path,value,unit,doc\ngpu.rays,1,ray,x\n", "stats.csv");
