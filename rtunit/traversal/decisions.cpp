@@ -63,8 +63,9 @@ void ignore_candidate(RayState& s) {
 Report report(RayState& s, float t, uint32_t kind) {
   s.report_accepted = false;
   // For hits that shaders report, the interval includes both ends (Vulkan, "Ray Intersection Candidate
-  // Determination").
-  const bool at_end_of_ray = !s.committed.valid() && t == s.committed.t;
+  // Determination"), so a primitive may report its own hit again.
+  const bool at_end_of_ray =
+      t == s.committed.t && (!s.committed.valid() || is_same_primitive(s.committed, s.candidate));
   // The first accepted report ends the intersection shader, though a nearer primitive may still be looked
   // for.
   const bool is_over =

@@ -18,9 +18,9 @@ Outcome run(const std::string& name, bool timing) {
 
 TEST_CASE("scripts of every kind pass on the functional machine", "[amber]") {
   for (const char* name :
-       {"values",    "shared",      "spirv",         "layouts", "images",   "rays",     "options",
-        "resources", "entries",     "numbers",       "files",   "sections", "versions", "first_hit",
-        "strides",   "far_binding", "chosen_arrays", "samples", "robust",   "clamped"}) {
+       {"values",         "shared",    "spirv",       "layouts",       "images",  "rays",     "options",
+        "reported_again", "resources", "entries",     "numbers",       "files",   "sections", "versions",
+        "first_hit",      "strides",   "far_binding", "chosen_arrays", "samples", "robust",   "clamped"}) {
     const Outcome outcome = run(name, false);
     INFO(name << ": " << outcome.message);
     CHECK(outcome.verdict == Verdict::Passed);
