@@ -47,12 +47,17 @@ pipeline::ShaderGroup group_of(const VkPipeline_T& pipeline,
   return out;
 }
 
-// Appends the stages and groups of a library, whose groups get other numbers of stages.
-void append(VkPipeline_T& to, const VkPipeline_T& library) {
+// Appends the stages of a library. Returns the number of the first one.
+uint32_t append_stages(VkPipeline_T& to, const VkPipeline_T& library) {
   if (!library.rays) throw Refusal("a library is not a ray-tracing pipeline");
   const auto first = uint32_t(to.stages.size());
-  const auto moved = [first](uint32_t shader) { return shader == exec::kNoShader ? shader : shader + first; };
   to.stages.insert(to.stages.end(), library.stages.begin(), library.stages.end());
+  return first;
+}
+
+// Appends the groups of a library, whose stages begin with number `first`.
+void append_groups(VkPipeline_T& to, const VkPipeline_T& library, uint32_t first) {
+  const auto moved = [first](uint32_t shader) { return shader == exec::kNoShader ? shader : shader + first; };
   for (pipeline::ShaderGroup group : library.rays->groups) {
     group.general = moved(group.general);
     group.hit = {moved(group.hit.closest_hit), moved(group.hit.any_hit), moved(group.hit.intersection)};
@@ -83,9 +88,14 @@ std::unique_ptr<VkPipeline_T> pipeline_of(Device& device, const VkRayTracingPipe
   for (uint32_t i = 0; info.pDynamicState && i < info.pDynamicState->dynamicStateCount; ++i)
     rays.has_dynamic_stack |=
         info.pDynamicState->pDynamicStates[i] == VK_DYNAMIC_STATE_RAY_TRACING_PIPELINE_STACK_SIZE_KHR;
+  // The pipeline's own groups may name stages of its libraries, which are numbered after its own.
+  std::vector<uint32_t> first_stages;
+  const uint32_t num_libraries = info.pLibraryInfo ? info.pLibraryInfo->libraryCount : 0;
+  for (uint32_t i = 0; i < num_libraries; ++i)
+    first_stages.push_back(append_stages(*made, *info.pLibraryInfo->pLibraries[i]));
   for (uint32_t i = 0; i < info.groupCount; ++i) rays.groups.push_back(group_of(*made, info.pGroups[i]));
-  for (uint32_t i = 0; info.pLibraryInfo && i < info.pLibraryInfo->libraryCount; ++i)
-    append(*made, *info.pLibraryInfo->pLibraries[i]);
+  for (uint32_t i = 0; i < num_libraries; ++i)
+    append_groups(*made, *info.pLibraryInfo->pLibraries[i], first_stages[i]);
   if (info.layout) made->layout = *info.layout;
   made->name = name_of(*made);
   return made;

@@ -192,6 +192,25 @@ TEST_CASE("libraries bring their groups into a pipeline", "[portable][rays]") {
   CHECK(scene.take() == kExpected);
 }
 
+TEST_CASE("groups of a pipeline may be made of the stages of its libraries", "[rays]") {
+  if (!RayClient::is_possible()) return;
+  RayPipelineClient client;
+  const Scene scene(client);
+  const VkPipelineCreateFlags library = VK_PIPELINE_CREATE_LIBRARY_BIT_KHR;
+  const VkPipeline hits =
+      client.ray_pipeline({{kSixStages[2], kSixStages[3], kSixStages[4]}, {}, {}, library});
+  const VkPipeline others = client.ray_pipeline({{kSixStages[1], kSixStages[5]}, {{1}}, {}, library});
+  constexpr uint32_t kNone = VK_SHADER_UNUSED_KHR;
+  const VkPipeline pipeline =
+      client.ray_pipeline({{kSixStages[0]}, {{0}, {4}, {kNone, 1, 2}, {kNone, 1, 2, 3}}, {hits, others}});
+  // The group of a library follows those of the pipeline.
+  const RayTable table = client.table(pipeline, 0, {1}, {2, 3}, {4});
+
+  REQUIRE(client.trace(pipeline, scene.set, table, {8, 1, 1}) == VK_SUCCESS);
+
+  CHECK(scene.take() == kExpected);
+}
+
 TEST_CASE("indirect launches read their size, or their whole table, from memory", "[portable][rays]") {
   if (!RayClient::is_possible()) return;
   RayPipelineClient client;
