@@ -2,12 +2,15 @@
 // a dispatch, and presented.
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
+#include <dlfcn.h>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
+#include "vulkan/window_system.h"
 
 namespace glint::test {
 namespace {
@@ -189,6 +192,74 @@ TEST_CASE("a clear in red, one in green and one in blue are presented", "[.][thr
     REQUIRE(screen.present(image) == VK_SUCCESS);
   }
   std::cout << screen.client.prints;
+}
+
+// Is a window of Xlib on the server that DISPLAY names, 200 by 120 pixels.
+class XlibWindow {
+ public:
+  XlibWindow() {
+    library_ = dlopen("libX11.so.6", RTLD_NOW);
+    if (!library_) throw std::runtime_error("libX11 is not installed");
+    display = function<Display* (*)(const char*)>("XOpenDisplay")(nullptr);
+    if (!display) throw std::runtime_error("no X server answers");
+    const Window root = function<Window (*)(Display*)>("XDefaultRootWindow")(display);
+    window =
+        function<Window (*)(Display*, Window, int, int, unsigned, unsigned, unsigned, unsigned long,
+                            unsigned long)>("XCreateSimpleWindow")(display, root, 0, 0, 200, 120, 0, 0, 0);
+    synchronize();
+  }
+  ~XlibWindow() { function<int (*)(Display*)>("XCloseDisplay")(display); }
+
+  void resize(unsigned width, unsigned height) const {
+    function<int (*)(Display*, Window, unsigned, unsigned)>("XResizeWindow")(display, window, width, height);
+    synchronize();
+  }
+  void destroy() const {
+    function<int (*)(Display*, Window)>("XDestroyWindow")(display, window);
+    synchronize();
+  }
+  VkSurfaceKHR surface(VkInstance instance) const {
+    const VkXlibSurfaceCreateInfoKHR info{VK_STRUCTURE_TYPE_XLIB_SURFACE_CREATE_INFO_KHR, nullptr, 0, display,
+                                          window};
+    VkSurfaceKHR out = nullptr;
+    check(reinterpret_cast<PFN_vkCreateXlibSurfaceKHR>(
+              vkGetInstanceProcAddr(instance, "vkCreateXlibSurfaceKHR"))(instance, &info, nullptr, &out),
+          "vkCreateXlibSurfaceKHR");
+    return out;
+  }
+
+  Display* display = nullptr;
+  Window window = 0;
+
+ private:
+  template <class Function>
+  Function function(const char* name) const {
+    return reinterpret_cast<Function>(dlsym(library_, name));
+  }
+  // The server has done all that was asked when it answers.
+  void synchronize() const { function<int (*)(Display*, int)>("XSync")(display, 0); }
+
+  void* library_ = nullptr;
+};
+
+// It needs an X server.
+TEST_CASE("a window of Xlib gives its size, and is lost when it is destroyed", "[.][xlib]") {
+  const XlibWindow window;
+  Screen screen({200, 120}, VK_KHR_XLIB_SURFACE_EXTENSION_NAME,
+                [&](VkInstance instance) { return window.surface(instance); });
+  CHECK(screen.capabilities().currentExtent.width == 200);
+  CHECK(screen.capabilities().currentExtent.height == 120);
+  const uint32_t image = screen.acquire();
+  screen.clear(image, 0, 1, 0);
+  REQUIRE(screen.present(image) == VK_SUCCESS);
+
+  window.resize(300, 100);
+  CHECK(screen.capabilities().currentExtent.width == 300);
+  screen.acquire();
+  CHECK(screen.result == VK_SUBOPTIMAL_KHR);
+  window.destroy();
+  screen.capabilities();
+  CHECK(screen.result == VK_ERROR_SURFACE_LOST_KHR);
 }
 
 // The driver looks at no stage of a graphics pipeline, so this one has none.

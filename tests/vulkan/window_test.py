@@ -108,8 +108,8 @@ class Window(VulkanTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertNotEqual(self.run_on_glint(CLIENT, "[vertex_formats]").returncode, 0)
 
-    @unittest.skipUnless(shutil.which("Xvfb") and shutil.which("vkcube"), "SKIPPED: Xvfb or vkcube is not installed (packages xvfb, vulkan-tools)")
-    def test_a_window_of_x_gives_its_size(self):
+    def run_on_x(self, *command, **environment):
+        """Runs a program on Glint with an X server of its own."""
         read, write = os.pipe()
         with subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24"], pass_fds=[write],
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:
@@ -117,10 +117,19 @@ class Window(VulkanTest):
             try:
                 with os.fdopen(read) as lines:
                     display = lines.readline().strip()  # The server writes it when it is ready.
-                result = self.run_on_glint("vkcube", "--c", "3", "--suppress_popups", DISPLAY=f":{display}", GLINT_OUT="cube",
-                                           GLINT_VK_QUEUE="universal")
+                return self.run_on_glint(*command, DISPLAY=f":{display}", **environment)
             finally:
                 server.terminate()
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "SKIPPED: Xvfb is not installed (package xvfb)")
+    def test_a_window_of_xlib_gives_its_size_and_is_lost_when_it_is_destroyed(self):
+        result = self.run_on_x(CLIENT, "[xlib]", GLINT_OUT="xlib")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(pixels(self.folder / "xlib/present-last.png"), (200, 120, {COLOURS[1]}))
+
+    @unittest.skipUnless(shutil.which("Xvfb") and shutil.which("vkcube"), "SKIPPED: Xvfb or vkcube is not installed (packages xvfb, vulkan-tools)")
+    def test_a_window_of_x_gives_its_size(self):
+        result = self.run_on_x("vkcube", "--c", "3", "--suppress_popups", GLINT_OUT="cube", GLINT_VK_QUEUE="universal")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         index = json.loads((self.folder / "cube/index.json").read_text())
         presents = [each for each in index["commands"] if each["kind"] == "present"]
