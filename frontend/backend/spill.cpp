@@ -157,6 +157,17 @@ class Spiller {
     inst.guard = guard_.value;
   }
 
+  // Gives an instruction that overwrites its own guard a copy of it, because the stores behind the
+  // instruction have the same guard.
+  void keep_guard(VirtualInst& inst) {
+    bool overwrites = false;
+    for_each_def(inst, [&](VirtualRegister r) { overwrites |= r == inst.guard; });
+    if (!overwrites) return;
+    const VirtualRegister kept = temporary(RegisterClass::Predicate);
+    emit(ops_.mov_pred, {Operand::of(kept), Operand::of(inst.guard)}, 0, inst, false);
+    inst.guard = kept;
+  }
+
   void rewrite(VirtualInst inst) {
     if (rewrite_move(inst)) {
       guard_ = {};
@@ -194,6 +205,7 @@ class Spiller {
           defined.push_back({*home, c, operand.reg});
         }
       });
+    if (!defined.empty()) keep_guard(inst);
     out_.push_back(inst);
     for (const Defined& d : defined) store(d.home, d.register_class, Operand::of(d.value), inst);
   }
