@@ -13,6 +13,12 @@
 namespace glint::vulkan {
 namespace {
 
+// Returns whether what a descriptor names is there. What is destroyed may stand in a set until a shader uses
+// it, which is a fault then.
+bool exists(const Device& device, const void* resource) {
+  return resource && device.bindable.contains(resource);
+}
+
 // Names a binding of a set that is bound.
 struct Place {
   const BoundSet& set;
@@ -23,7 +29,7 @@ struct Place {
 pipeline::BufferRange buffer_range(Device& device, const Place& place, uint32_t element,
                                    pipeline::BufferRange unbound) {
   const Descriptor& descriptor = place.at(element);
-  if (!descriptor.buffer) return unbound;
+  if (!exists(device, descriptor.buffer)) return unbound;
   const VkDeviceSize dynamic =
       place.layout.is_dynamic() ? place.set.dynamic_offsets.at(place.layout.first_dynamic + element) : 0;
   const VkDeviceSize offset = descriptor.offset + dynamic;
@@ -59,10 +65,11 @@ exec::ImageView texels_of(Device& device, const VkBufferView_T& view) {
 }
 
 exec::ImageView image_of(Device& device, const Descriptor& descriptor, pipeline::BindingPlace number) {
-  if (descriptor.texels) return texels_of(device, *descriptor.texels);
-  if (!descriptor.view) return pipeline::unbound_image(number);
+  if (exists(device, descriptor.texels) && exists(device, descriptor.texels->buffer))
+    return texels_of(device, *descriptor.texels);
+  if (!exists(device, descriptor.view)) return pipeline::unbound_image(number);
   exec::ImageView out = descriptor.view->view;
-  if (descriptor.sampler) out.sampler = descriptor.sampler->sampler;
+  if (exists(device, descriptor.sampler)) out.sampler = descriptor.sampler->sampler;
   return out;
 }
 
@@ -73,11 +80,12 @@ void bind_images(Device& device, pipeline::LaunchBuilder& builder, const Place& 
   builder.bind_images(number, std::move(all));
 }
 
-void bind_samplers(pipeline::LaunchBuilder& builder, const Place& place, pipeline::BindingPlace number) {
+void bind_samplers(const Device& device, pipeline::LaunchBuilder& builder, const Place& place,
+                   pipeline::BindingPlace number) {
   std::vector<exec::Sampler> all;
   for (uint32_t i = 0; i < place.layout.count; ++i) {
     const VkSampler sampler = place.at(i).sampler;
-    all.push_back(sampler ? sampler->sampler : pipeline::unbound_sampler(number));
+    all.push_back(exists(device, sampler) ? sampler->sampler : pipeline::unbound_sampler(number));
   }
   builder.bind_samplers(number, std::move(all));
 }
@@ -100,7 +108,7 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
       return builder.bind_buffers(number,
                                   {{set->second.set->inline_blocks.at(number_there), place.layout.count}});
     case DescriptorKind::Sampler:
-      return bind_samplers(builder, place, number);
+      return bind_samplers(device, builder, place, number);
     case DescriptorKind::TexelBuffer:
     case DescriptorKind::Image:
       return bind_images(device, builder, place, number);

@@ -65,12 +65,14 @@ VkResult CreateBuffer(Device& device, const VkBufferCreateInfo* info, VkBuffer* 
   made->bytes = info->size, made->usage = info->usage;
   made->number = ++device.buffers_made;
   made->name = fmt::format("buffer {}", made->number);
+  device.bindable.insert(made.get());
   *out = made.release();
   return VK_SUCCESS;
 }
 
 void DestroyBuffer(Device& device, VkBuffer buffer) {
   if (!buffer) return;
+  device.bindable.erase(buffer);
   device.parts.forget(device.memory, *buffer);
   forget_structures(device, *buffer);
   if (buffer->address) device.memory.free(buffer->address);

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "frontend/cache.h"
@@ -52,6 +53,8 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   glint::frontend::ShaderCache shader_cache{{}};  // in memory only
   VkDeviceSize allocated_bytes = 0;               // of the heap
   std::set<VkAccelerationStructureKHR> structures;
+  // The buffers, views and samplers that exist. Descriptors that no shader uses may name destroyed ones.
+  std::unordered_set<const void*> bindable;
   std::vector<VkAccelerationStructureKHR> unplaced_structures;  // Their buffers have no memory yet.
   // They give objects names.
   uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, ray_pipelines_made = 0,

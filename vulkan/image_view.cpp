@@ -94,7 +94,7 @@ exec::Words border_of(VkBorderColor color) {
 
 }  // namespace
 
-VkResult CreateImageView(Device&, const VkImageViewCreateInfo* info, VkImageView* out) {
+VkResult CreateImageView(Device& device, const VkImageViewCreateInfo* info, VkImageView* out) {
   if (!info->image->memory) throw Refusal(fmt::format("{} is not bound to memory", info->image->whole.name));
   auto made = std::make_unique<VkImageView_T>();
   exec::ImageView& view = made->view;
@@ -103,22 +103,26 @@ VkResult CreateImageView(Device&, const VkImageViewCreateInfo* info, VkImageView
   const VkComponentMapping& map = info->components;
   view.swizzle = {component_of(map.r, exec::Component::Red), component_of(map.g, exec::Component::Green),
                   component_of(map.b, exec::Component::Blue), component_of(map.a, exec::Component::Alpha)};
+  device.bindable.insert(made.get());
   *out = made.release();
   return VK_SUCCESS;
 }
-void DestroyImageView(Device&, VkImageView view) {
+void DestroyImageView(Device& device, VkImageView view) {
+  device.bindable.erase(view);
   delete view;
 }
 
-VkResult CreateBufferView(Device&, const VkBufferViewCreateInfo* info, VkBufferView* out) {
+VkResult CreateBufferView(Device& device, const VkBufferViewCreateInfo* info, VkBufferView* out) {
   *out = new VkBufferView_T{info->buffer, info->offset, info->range, texel_format_of(info->format)};
+  device.bindable.insert(*out);
   return VK_SUCCESS;
 }
-void DestroyBufferView(Device&, VkBufferView view) {
+void DestroyBufferView(Device& device, VkBufferView view) {
+  device.bindable.erase(view);
   delete view;
 }
 
-VkResult CreateSampler(Device&, const VkSamplerCreateInfo* info, VkSampler* out) {
+VkResult CreateSampler(Device& device, const VkSamplerCreateInfo* info, VkSampler* out) {
   exec::Sampler s;
   s.mag = filter_of(info->magFilter == VK_FILTER_LINEAR),
   s.min = filter_of(info->minFilter == VK_FILTER_LINEAR);
@@ -130,9 +134,11 @@ VkResult CreateSampler(Device&, const VkSamplerCreateInfo* info, VkSampler* out)
   static_assert(int(exec::Comparison::Always) == VK_COMPARE_OP_ALWAYS);
   if (info->compareEnable) s.compare = exec::Comparison(info->compareOp);
   *out = new VkSampler_T{s};
+  device.bindable.insert(*out);
   return VK_SUCCESS;
 }
-void DestroySampler(Device&, VkSampler sampler) {
+void DestroySampler(Device& device, VkSampler sampler) {
+  device.bindable.erase(sampler);
   delete sampler;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
@@ -83,6 +84,39 @@ TEST_CASE("texel buffers are read and written in their formats, from their offse
     CHECK(words.as<uint32_t>()[i] == 0);
     CHECK(words.as<uint32_t>()[128 + i] == 4 * i + 1000 * (4 * i + 3));
   }
+}
+
+TEST_CASE("a descriptor that no shader uses may name a view that is destroyed") {
+  Client client;
+  const MappedBuffer out = client.buffer(256);
+  const MappedBuffer bytes = client.buffer(256, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  std::memset(out.data, 0, out.bytes);
+  const std::array types{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER};
+  const ComputePipeline pipeline =
+      client.pipeline(kHead +
+                          "layout(set = 0, binding = 0) buffer Out { uint v[]; };\n"
+                          "layout(set = 0, binding = 1) uniform textureBuffer gone;\n"
+                          "void main() { if (v[0] == 7) v[1] = uint(texelFetch(gone, 0).x); v[2] = 5; }\n",
+                      {{types[0], types[1]}});
+  const VkDescriptorSet set = allocate(client, pipeline.set_layout, {{types[0], 1}, {types[1], 1}});
+  VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+  info.buffer = bytes.buffer, info.format = VK_FORMAT_R8G8B8A8_UNORM, info.range = VK_WHOLE_SIZE;
+  VkBufferView view = nullptr;
+  REQUIRE(vkCreateBufferView(client.device, &info, nullptr, &view) == VK_SUCCESS);
+  const VkDescriptorBufferInfo whole{out.buffer, 0, VK_WHOLE_SIZE};
+  VkWriteDescriptorSet writes[] = {write_of(set, 0, types[0]), write_of(set, 1, types[1])};
+  writes[0].pBufferInfo = &whole, writes[1].pTexelBufferView = &view;
+  vkUpdateDescriptorSets(client.device, 2, writes, 0, nullptr);
+  vkDestroyBufferView(client.device, view, nullptr);
+  // Something else lies where the view was.
+  std::vector<std::vector<std::byte>> others;
+  for (size_t size = 16; size <= 512; size += 8) others.emplace_back(size, std::byte{0xff});
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+
+  CHECK(out.as<uint32_t>()[1] == 0);
+  CHECK(out.as<uint32_t>()[2] == 5);
+  CHECK(client.messages.empty());
 }
 
 TEST_CASE("bindings may have any numbers, and arrays and plain ones keep apart", "[portable]") {
