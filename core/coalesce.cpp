@@ -38,6 +38,17 @@ LineSectors& LineList::other_line(Address line) {
   return lines_[count_++] = {line, 0, {}, 0, 0};
 }
 
+bool LineList::merge(const LineList& later) {
+  if (!std::ranges::equal(lines(), later.lines(), {}, &LineSectors::line, &LineSectors::line)) return false;
+  for (uint32_t i = 0; i < count_; ++i) {
+    const LineSectors& more = later.lines_[i];
+    lines_[i].sectors |= more.sectors;
+    lines_[i].words |= more.words;
+    lines_[i].lanes |= more.lanes;
+  }
+  return true;
+}
+
 uint32_t LineList::num_sectors() const {
   uint32_t sum = 0;
   for (const LineSectors& line : lines()) sum += mem::num_sectors(line.sectors);

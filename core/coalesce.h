@@ -46,6 +46,9 @@ class LineList {
   void add_row(Address physical, LaneMask lanes);
   std::span<const LineSectors> lines() const { return {lines_.data(), count_}; }
   uint32_t num_sectors() const;
+  // Adds what `later` touches, if it has the same lines in the same order. Otherwise it changes nothing and
+  // returns false.
+  bool merge(const LineList& later);
   void set_atomic(size_t line, mem::AtomicLanes atomic) { lines_[line].atomic = atomic; }
   Address offset(Address physical) const { return physical & mask_; }  // offset in its line
 

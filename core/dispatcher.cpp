@@ -3,6 +3,7 @@
 #include "core/dispatcher.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace glint::core {
@@ -10,8 +11,15 @@ namespace glint::core {
 Dispatcher::Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores)
     : launch_latency_(params.launch_latency),
       warp_launch_latency_(params.warp_launch_latency),
+      interval_parts_(Cycle(std::lround(params.grid_interval * double(kParts)))),
       num_blocks_(num_blocks),
       cores_(std::move(cores)) {
+}
+
+Cycle Dispatcher::take_start(Cycle ready) {
+  const Cycle start = std::max(ready * kParts, free_parts_);
+  free_parts_ = start + interval_parts_;
+  return start / kParts;
 }
 
 void Dispatcher::dispatch(Cycle now) {
@@ -20,7 +28,7 @@ void Dispatcher::dispatch(Cycle now) {
     any = false;
     for (CoreCell* core : cores_) {
       if (done() || !core->has_room()) continue;
-      core->launch(now, next_++, ready);
+      core->launch(now, next_++, take_start(ready));
       any = true;
       if (done())
         for (CoreCell* each : cores_) each->end_of_blocks();

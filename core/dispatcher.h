@@ -13,7 +13,8 @@ namespace glint::core {
 // Acts only between windows. It gives one block to each core in turn, with the cores in their fixed order, so
 // the assignment is a function of the model and not of how cells are run. Room that becomes free in a window
 // is filled at the window's end. Model: hardware would fill it some cycles earlier or later; windows are
-// shorter than a memory access.
+// shorter than a memory access. Blocks start in launch order, `grid_interval` apart: one unit of the GPU
+// starts them all.
 class Dispatcher {
  public:
   Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores);
@@ -23,10 +24,15 @@ class Dispatcher {
   uint32_t num_dispatched() const { return next_; }  // number of blocks
 
  private:
-  const Cycle launch_latency_, warp_launch_latency_;
+  static constexpr Cycle kParts = 16;  // number of parts of a cycle
+  // Returns when the next block starts that could start at `ready`.
+  Cycle take_start(Cycle ready);
+
+  const Cycle launch_latency_, warp_launch_latency_, interval_parts_;
   const uint32_t num_blocks_;
   std::vector<CoreCell*> cores_;
   uint32_t next_ = 0;
+  Cycle free_parts_ = 0;  // earliest start of the next block, in parts of a cycle
 };
 
 }  // namespace glint::core

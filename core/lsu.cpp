@@ -26,6 +26,7 @@ Lsu::Lsu(const Params& params, mem::L1Port& l1)
     sector_cycles_[sectors] = uint8_t((sectors + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle);
   for (uint32_t id = uint32_t(accesses_.size()); id-- > 0;) free_.push_back(id);
   completed_.reserve(accesses_.size());
+  if (params_.merged_lines) waiting_store_.assign(params.warps + params.parking_lot.warps, kNoStore);
 }
 
 MemoryAccess& Lsu::take(uint32_t scheduler, Cycle now, bool texture) {
@@ -95,6 +96,11 @@ bool Lsu::accept_from(Group& group, uint32_t q, Cycle now) {
 // Puts an access at the end of its pipe.
 void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
   MemoryAccess& access = accesses_[id];
+  if (params_.merged_lines && access.write && merge(id)) {
+    completed_.push_back(id);
+    accepted_[num_accepted_++] = id;
+    return;
+  }
   // The cycle from issue to here is the first of the latency, so an unloaded unit adds exactly its latency.
   access.ready = now - 1 + (access.texture ? tex_unit_ : lsu_unit_).latency;
   if (access.texture) {
@@ -118,6 +124,20 @@ void Lsu::enter(uint32_t id, Pipe& pipe, Cycle now) {
   }
   pipe.ids.push(id);
   accepted_[num_accepted_++] = id;
+}
+
+// Adds a store to the warp's store before it, and returns whether it could. Otherwise the store is the one
+// that the next may be added to.
+bool Lsu::merge(uint32_t id) {
+  MemoryAccess& access = accesses_[id];
+  if (access.traffic == mem::Traffic::ShaderAtomic) return false;
+  uint32_t& waiting = waiting_store_[access.slot];
+  const size_t lines = access.lines.lines().size();
+  if (waiting != kNoStore && lines > 0 && lines <= params_.merged_lines &&
+      accesses_[waiting].traffic == access.traffic && accesses_[waiting].lines.merge(access.lines))
+    return true;
+  if (lines > 0) waiting = id;
+  return false;
 }
 
 // Returns the cycles of the texture units for the samples of an access, or 0 when only the interval counts.
@@ -182,6 +202,7 @@ bool Lsu::send_line(Cycle now, size_t p) {
     cycles = std::max<uint32_t>(cycles, sector_cycles_[mem::num_sectors(line.sectors)]);
   }
   if (cycles == 0) return false;
+  if (params_.merged_lines && waiting_store_[access.slot] == id) waiting_store_[access.slot] = kNoStore;
   door_free = now + cycles;
   if (access.num_sent == lines.size()) {
     pipe.ids.pop();

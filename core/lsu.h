@@ -108,6 +108,7 @@ class Lsu {
   void accept(Group& group, Cycle now);
   bool accept_from(Group& group, uint32_t queue, Cycle now);
   void enter(uint32_t id, Pipe& pipe, Cycle now);
+  bool merge(uint32_t id);
   void send(Cycle now);
   size_t door_of(size_t pipe) const { return own_door_ && pipe == 1; }
   Cycle texture_cycles(const MemoryAccess& access) const;
@@ -136,6 +137,8 @@ class Lsu {
   std::array<Pipe, 3> pipes_;  // load-store, texture, shared memory
   uint32_t next_pipe_ = 0;
   std::array<Cycle, 2> door_free_{};  // doors to the L1; the second is the texture unit's own
+  static constexpr uint32_t kNoStore = ~0u;
+  std::vector<uint32_t> waiting_store_;  // by warp slot: the last store, until its first line is sent
   std::array<uint32_t, 2> accepted_{};
   uint32_t num_accepted_ = 0;
   uint64_t num_vacated_ = 0;

@@ -106,6 +106,7 @@ struct LsuParams {
   uint32_t war_latency = 11, shared_war_latency = 9;
   uint32_t atomic_latency = 0;  // H200: 204; 0, because that of other parts is unpublished
   bool atomic_turns = false;    // H200: true; false, because that of other parts is unpublished
+  uint32_t merged_lines = 0;    // H100: 4; 0, because that of other parts is unpublished
   bool holds_operands() const { return war_latency + shared_war_latency > 0; }
   static ParamList params() {
     return {
@@ -134,7 +135,12 @@ struct LsuParams {
               "Extra cycles from an atomic on global memory to its result, compared with a load.", 0, 10000),
         flag(&LsuParams::atomic_turns, "atomic_turns",
              "True: lanes of an atomic that meet in a word of global memory take turns there. False: each "
-             "sector has one turn.")};
+             "sector has one turn."),
+        param(&LsuParams::merged_lines, "merged_lines", "line",
+              "Largest number of lines of a store that leaves together with the warp's store before it, if "
+              "both touch the same lines and the earlier one still waits for the L1. 0: no stores leave "
+              "together.",
+              0, 32)};
   }
 };
 
@@ -287,6 +293,7 @@ struct Params {
   uint32_t warp_launch_latency = 0;
   // In GPGPU-Sim and Accel-Sim, a core takes one block per cycle (issue_block2core).
   uint32_t block_interval = 1;
+  double grid_interval = 0;  // an H100: 1.19; 0, because that of other parts is unpublished
   PolicyChoice<exec::WarpLayout> layout{"linear"};
   uint64_t instruction_budget = 100'000'000;
   // Choice: this is 15 ms of a GPU. Only warps that spin are known to make so little progress for so long.
@@ -361,6 +368,10 @@ struct Params {
               "Cycles from the taking of a warp slot to the warp's first instruction.", 0, 100'000),
         param(&Params::block_interval, "block_interval", "cycle",
               "Cycles from the start of a block on a core to the start of the next.", 0, 10'000),
+        param(&Params::grid_interval, "grid_interval", "cycle",
+              "Cycles from the start of a block to the start of the next on any core, in steps of 1/16. 0: "
+              "blocks on different cores start together.",
+              0.0, 10'000.0),
         policy(
             &Params::layout, "warp_layout",
             "Selects which threads of a launch form a warp, and the order in which warps and blocks start."),

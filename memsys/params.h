@@ -138,8 +138,8 @@ struct L2Params {
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;  // Vulkan-Sim: dram_partition_queues
   // Choice: vendors do not publish it. An H200 takes 2 cycles, and 1/8 cycle per lane (docs/validation.md).
-  uint32_t atomic_interval = 2;
-  double atomic_lane_interval = 0;
+  double atomic_interval = 2;
+  double atomic_lane_interval = 0, atomic_answer_interval = 0;
   // A write takes 1.25 cycles on an H200, with one more for each whole sector and 1.31 for each sector that
   // is written in part (docs/validation.md).
   double write_visit = 0;
@@ -173,10 +173,14 @@ struct L2Params {
               "scheduler.",
               0, 1 << 16),
         param(&L2Params::atomic_interval, "atomic_interval", "cycle",
-              "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns.", 1,
-              1000),
+              "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns, in "
+              "steps of 1/16.",
+              1.0, 1000.0),
         param(&L2Params::atomic_lane_interval, "atomic_lane_interval", "cycle",
               "Extra slice cycles per lane of an atomic, in steps of 1/16.", 0.0, 1000.0),
+        param(&L2Params::atomic_answer_interval, "atomic_answer_interval", "cycle",
+              "Extra slice cycles per lane of an atomic that returns the old value, in steps of 1/16.", 0.0,
+              1000.0),
         param(&L2Params::write_visit, "write_visit", "cycle",
               "Fixed slice cycles per write, plus one cycle per sector. 0: there is no fixed cost, and "
               "sectors cost the same as for reads.",

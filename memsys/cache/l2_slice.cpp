@@ -22,11 +22,13 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
     : params_(params.l2),
       visit_parts_(parts_of(params.l2.write_visit, kParts)),
       partial_parts_(parts_of(params.l2.partial_interval, kParts)),
+      turn_parts_(parts_of(params.l2.atomic_interval, kParts)),
       lane_parts_(parts_of(params.l2.atomic_lane_interval, kParts)),
+      answer_parts_(parts_of(params.l2.atomic_answer_interval, kParts)),
       line_bytes_(params.line),
       atom_sectors_(std::max(params.dram.atom_bytes(), kSectorBytes) / kSectorBytes),
       index_(index),
-      dram_latency_(params.dram.latency),
+      dram_latency_(params.dram.latency + (index / params.l2.slices % 2) * params.dram.far_latency),
       map_(map),
       port_(std::move(port)),
       stats_(parent, name),
@@ -124,7 +126,8 @@ void L2Slice::serve(Cycle now) {
 
 Cycle L2Slice::service_parts(const Packet& packet) const {
   if (!is_atomic(packet)) return sector_cycles(packet.sectors) * kParts;
-  return Cycle{num_turns(packet)} * params_.atomic_interval * kParts + packet.atomic.lanes * lane_parts_;
+  const Cycle lane = packet.write ? lane_parts_ : lane_parts_ + answer_parts_;
+  return num_turns(packet) * turn_parts_ + packet.atomic.lanes * lane;
 }
 
 // Keeps the slice busy with a packet. Writes may take parts of cycles: a packet that waited for the one

@@ -34,9 +34,10 @@ struct DramParams {
   double clock_mhz = 1750.0;  // GDDR6 command clock, tCK 570 ps (Ramulator 2.1 GDDR6-14000)
   // 7 GT/s on 2 bytes give 14 GB/s per channel, and 56 GB/s on 4 channels (Vulkan-Sim MOBILE).
   uint32_t transfers_per_clock = 4;
-  uint32_t burst = 16;     // GDDR6 has 16n prefetch, which is 32 bytes per access
-  uint32_t queue = 64;     // Vulkan-Sim: frfcfs_dram_sched_queue_size
-  uint32_t latency = 100;  // Vulkan-Sim: dram_latency, in core cycles
+  uint32_t burst = 16;       // GDDR6 has 16n prefetch, which is 32 bytes per access
+  uint32_t queue = 64;       // Vulkan-Sim: frfcfs_dram_sched_queue_size
+  uint32_t latency = 100;    // Vulkan-Sim: dram_latency, in core cycles
+  uint32_t far_latency = 0;  // an H200: 190; 0, because that of other parts is unpublished
   bool dual_command_bus = false;
   uint32_t activate_clocks = 1;
   uint32_t bus_turn = 2;  // GPGPU-Sim: tRTW = CL + BL + 2 - WL
@@ -82,6 +83,10 @@ struct DramParams {
               "Largest number of requests that the scheduler can choose from.", 0, 1 << 16),
         param(&DramParams::latency, "latency", "core cycle",
               "Cycles from the L2 slice to the scheduler's queue.", 0, 10000),
+        param(&DramParams::far_latency, "far_latency", "core cycle",
+              "Extra cycles from the L2 slice to the scheduler's queue in every second partition, which "
+              "stands for the half of the chip that is far from a core.",
+              0, 10000),
         flag(&DramParams::dual_command_bus, "dual_command_bus",
              "True: a clock can carry one row and one column command, as in HBM. False: a clock carries one "
              "command."),

@@ -26,6 +26,8 @@ pipeline::RenderJob frame() {
 Params all_on(Params params) {
   params.issue = PolicyChoice<IssueScheduler>("cggty");
   params.block_interval = 1;
+  params.grid_interval = 1.5;
+  params.lsu.merged_lines = 4;
   params.write_order = false;
   params.register_file = {2, 3};
   params.fetch = {false, 1024, 4, 2};

@@ -1,5 +1,8 @@
 // Tests limits of L1, network and L2 that show only in one cycle or byte.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <map>
+
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
 
@@ -101,6 +104,37 @@ TEST_CASE("lanes of an atomic that take turns take the slice's time for each, an
   turns.atomic = {.lanes = 0, .turns = 1};  // there are never fewer turns than sectors
   turns.sectors = 0b11;
   CHECK(l2_latency(params, turns) == kL2Hit + 2 * 5 - 1 + 2);
+}
+
+TEST_CASE("an atomic that returns old values takes its further part of the slice for each lane") {
+  Params params = bare();
+  params.l2.atomic_interval = 1.5;
+  Request request = atomic(kLine, 1);
+  request.atomic = {.lanes = 8, .turns = 2};
+  // Data of two sectors are on the way there, which take one more cycle of the 40-byte port.
+  const Cycle without = l2_latency(params, request);
+  CHECK(without == kL2Hit + 3 - 1 + 1);
+  params.l2.atomic_answer_interval = 0.25;
+  CHECK(l2_latency(params, request) == without + 2);
+}
+
+TEST_CASE("every second partition's DRAM is as much farther as its parameter says") {
+  Params params = bare();
+  params.dram.channels = 2;
+  const auto latencies = [&] {
+    std::array<Cycle, 8> out{};
+    for (size_t chunk = 0; chunk < out.size(); ++chunk) {
+      MemoryRig rig(params);
+      out[chunk] = rig.read_latency(chunk * params.interleave, 1);
+    }
+    return out;
+  };
+  const auto near = latencies();
+  params.dram.far_latency = 190;
+  const auto far = latencies();
+  std::map<Cycle, int> differences;
+  for (size_t chunk = 0; chunk < far.size(); ++chunk) ++differences[far[chunk] - near[chunk]];
+  CHECK(differences == std::map<Cycle, int>{{0, 4}, {190, 4}});
 }
 
 TEST_CASE("a credit is back after the way back, not a cycle before") {

@@ -112,6 +112,42 @@ TEST_CASE("a write ends when its last line has been taken, and is not answered")
   CHECK(memory.log()[2].write);
 }
 
+TEST_CASE("a store leaves with the warp's store before it, if that waits and has the same few lines") {
+  // Words 0 and 1 of each of `lines` lines, from warp slots `first` and `second`, `apart` cycles after
+  // another.
+  const auto requests = [](uint32_t lines, uint32_t first, uint32_t second, Cycle apart,
+                           uint32_t offset = 4) {
+    mem::FixedLatencyMemory memory(kMemoryLatency);
+    Params params;
+    params.lsu.merged_lines = 4;
+    Lsu lsu(params, memory);
+    const auto store = [&](uint32_t slot, Cycle now, uint32_t at) {
+      MemoryAccess& access = lsu.take(0, now, false);
+      access.slot = slot;
+      access.write = true;
+      access.traffic = mem::Traffic::ShaderGlobal;
+      for (uint32_t i = 0; i < lines; ++i) access.lines.add(4096 + 128 * i + at, 4, 0);
+    };
+    store(first, 0, 0);
+    for (Cycle now = 1; now < apart; ++now) {
+      lsu.tick(now);
+      for (uint32_t id : lsu.completed()) lsu.release(id);
+    }
+    store(second, apart, offset);
+    completions(lsu, apart + 1);
+    return memory.log();
+  };
+  const auto merged = requests(4, 3, 3, 2);
+  REQUIRE(merged.size() == 4);
+  CHECK(merged[0].words == 0b11);
+  CHECK(merged[0].sectors == 1);
+  CHECK(requests(4, 3, 3, 2, 36)[3].sectors == 0b11);
+  CHECK(requests(5, 3, 3, 2).size() == 10);      // too many lines
+  CHECK(requests(4, 3, 4, 2).size() == 8);       // another warp's
+  CHECK(requests(4, 3, 3, 40).size() == 8);      // the first has left
+  CHECK(requests(4, 3, 3, 2, 128).size() == 8);  // other lines
+}
+
 TEST_CASE("a texture access takes the texture unit's latency and does not hold up a load") {
   mem::FixedLatencyMemory memory(kMemoryLatency);
   Params params;
