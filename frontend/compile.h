@@ -35,6 +35,9 @@ struct BackendOptions {
   // These emit an instruction where a core may regroup lanes: at the shader's own calls, and before the hit
   // shaders of each trace. Without them a shader's call of reorderThread is nothing.
   bool reorder_calls = false, reorder_traces = false;
+  // With true, the scheduler moves nothing across an op that hardware finishes by a call for rare operands
+  // (backend/slow_paths.h), since the call ends a block of its assembler.
+  bool slow_paths_end_runs = false;
 };
 
 // Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp, each also

@@ -13,6 +13,15 @@
 
 namespace glint::pipeline {
 
+frontend::PtxOptions ptx_options(const CompilerParams& compiler, bool contract) {
+  frontend::PtxOptions out;
+  out.backend.max_registers = compiler.max_registers;
+  out.backend.schedule = compiler.schedule;
+  out.backend.guard_latency = compiler.guard_latency;
+  out.contract = contract;
+  return out;
+}
+
 KernelWorld::KernelWorld(frontend::Kernel kernel, std::shared_ptr<mem::AddressSpace> memory)
     : kernel_(std::move(kernel)), memory_(std::move(memory)) {
   image = exec::link({kernel_.program});

@@ -11,6 +11,7 @@
 
 #include "exec/image.h"
 #include "frontend/ptx/ptx.h"
+#include "pipeline/params.h"
 #include "pipeline/render.h"
 
 namespace glint::pipeline {
@@ -19,6 +20,9 @@ struct KernelGrid {
   std::array<uint32_t, 3> grid{1, 1, 1}, block{1, 1, 1};
   uint32_t dynamic_shared_bytes = 0;
 };
+
+// Returns how a machine's parameters have a kernel compiled. `contract` fuses products into sums.
+frontend::PtxOptions ptx_options(const CompilerParams& compiler, bool contract = true);
 
 // Holds memory and world of a kernel. It cannot be moved, because `world` points into it.
 class KernelWorld {

@@ -21,7 +21,9 @@ isa::Program assemble(VirtualProgram program, const BackendOptions& options, Pas
   pass("convert-selections", [&] { convert_selections(program, ops); });
   pass("keep-predicates", [&] { keep_predicates_across_calls(program, ops); });
   if (options.schedule)
-    pass("schedule", [&] { schedule(program, options.max_registers, options.guard_latency); });
+    pass("schedule", [&] {
+      schedule(program, options.max_registers, options.guard_latency, options.slow_paths_end_runs);
+    });
   Allocation allocation = pass("allocate", [&] { return allocate(program, options.max_registers, ops); });
   if (options.reorder_calls) pass("count-live-words", [&] { count_live_words(program, allocation); });
   pass("expand-calls", [&] { expand_calls(program, allocation, ops); });

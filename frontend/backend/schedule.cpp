@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frontend/backend/liveness.h"
+#include "frontend/backend/slow_paths.h"
 
 namespace glint::frontend {
 namespace {
@@ -345,7 +346,8 @@ class Run {
 
 }  // namespace
 
-void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency) {
+void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency,
+              bool slow_paths_end_runs) {
   // Register allocation needs this room in addition to the live words: the stack pointer, gaps between pairs,
   // and the registers of spill code.
   constexpr uint32_t kReserve = 4;
@@ -362,7 +364,8 @@ void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_la
     for (size_t i = 0; i < code.size(); ++i) {
       if (code[i].kind == VirtualInst::Kind::SaveLive) inside = true;
       if (code[i].kind == VirtualInst::Kind::RestoreLive) inside = false;
-      moves[i] = !inside && is_movable(code[i]) && !reads_clock(code[i]);
+      moves[i] = !inside && is_movable(code[i]) && !reads_clock(code[i]) &&
+                 !(slow_paths_end_runs && has_slow_path(code[i].op));
     }
     LiveWalk walk(liveness.out[b]);
     VirtualRegister guard = kNoRegister;  // guard of the first guarded instruction after the run

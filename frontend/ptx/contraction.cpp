@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/contraction.h"
 
+#include <string_view>
 #include <vector>
 
 #include "frontend/backend/slots.h"
@@ -32,27 +33,39 @@ class Contraction {
       std::vector<VirtualInst> out;
       for (VirtualInst& inst : block.code) {
         if (!fuse(inst, out)) out.push_back(inst);
+        for_each_def(inst, [&](VirtualRegister r) {
+          if (definitions_[r] != 1) forget(r);
+        });
         const VirtualRegister to = result_of(inst);
-        if (to != kNoRegister && free_.at(to).op == 'm' && reads_fixed(inst)) products_[to] = inst;
+        if (to != kNoRegister && definitions_[to] == 1 && free_.at(to).op == 'm' && !reads(inst, to))
+          products_[to] = inst;
       }
       block.code = std::move(out);
     }
   }
 
  private:
-  // Returns the register of a free result that is written once, or kNoRegister.
+  // Returns the register of a free result, or kNoRegister.
   VirtualRegister result_of(const VirtualInst& inst) const {
     if (!is_real(inst) || inst.operands.empty() || inst.operands[0].kind != VirtualOperand::Kind::Register)
       return kNoRegister;
     const VirtualRegister to = inst.operands[0].reg;
-    if (!free_.contains(to) || definitions_[to] != 1 || is_guarded(inst)) return kNoRegister;
-    return inst.operands.size() == 3 ? to : kNoRegister;
+    if (!free_.contains(to) || is_guarded(inst)) return kNoRegister;
+    const FreeResult& result = free_.at(to);
+    const std::string_view name = row_of(inst).name;
+    const bool is_it =
+        result.op != kNotFree && name.front() == result.op && name.substr(3) == ".rn" + result.suffix;
+    return is_it && inst.operands.size() == 3 ? to : kNoRegister;
   }
-  // Returns whether the operands still hold the same values later.
-  bool reads_fixed(const VirtualInst& inst) const {
-    for (size_t i = 1; i < inst.operands.size(); ++i)
-      if (is_register(inst.operands[i]) && definitions_[inst.operands[i].reg] != 1) return false;
-    return true;
+  static bool reads(const VirtualInst& inst, VirtualRegister r) {
+    bool found = false;
+    for_each_use(inst, [&](VirtualRegister used) { found |= used == r; });
+    return found;
+  }
+  // Drops the products whose factors are no longer what they were: `r` is written, and not for the only time.
+  void forget(VirtualRegister r) {
+    std::erase_if(products_,
+                  [&](const auto& product) { return product.first == r || reads(product.second, r); });
   }
 
   const VirtualInst* product(const VirtualOperand& o, const std::string& suffix) const {
@@ -61,8 +74,12 @@ class Contraction {
     return found != products_.end() && free_.at(o.reg).suffix == suffix ? &found->second : nullptr;
   }
 
+  // Returns the negative of a value: a constant, or a register that a further instruction writes.
   VirtualOperand negated(const VirtualOperand& value, const std::string& suffix, const VirtualInst& like,
                          std::vector<VirtualInst>& out) {
+    const bool is_wide = suffix == ".f64";
+    if (is_constant(value) && (is_wide || suffix == ".f32"))
+      return VirtualOperand::value(value.constant ^ (uint64_t{1} << (is_wide ? 63 : 31)));
     const VirtualOperand to =
         VirtualOperand::of(program_.new_register(program_.registers[like.operands[0].reg]));
     const int op = isa::find_op("neg" + suffix);
@@ -81,9 +98,17 @@ class Contraction {
     const VirtualInst* right = left ? nullptr : product(inst.operands[2], suffix);
     if (!left && !right) return false;
     const VirtualInst& factor = left ? *left : *right;
-    VirtualOperand a = factor.operands[1], other = inst.operands[left ? 2 : 1];
-    if (subtracts) (left ? other : a) = negated(left ? other : a, suffix, inst, out);
-    out.push_back(make_inst(uint16_t(fma), {inst.operands[0], a, factor.operands[2], other}, inst.line));
+    VirtualOperand a = factor.operands[1], b = factor.operands[2], other = inst.operands[left ? 2 : 1];
+    int op = fma;
+    if (subtracts && left && !is_constant(other) && suffix == ".f32") {
+      op = isa::find_op("fms.rn.f32");
+    } else if (subtracts && right && !is_constant(a) && !is_constant(b) && suffix == ".f32") {
+      op = isa::find_op("fnma.rn.f32");
+    } else if (subtracts) {
+      VirtualOperand& changed = left ? other : is_constant(b) ? b : a;
+      changed = negated(changed, suffix, inst, out);
+    }
+    out.push_back(make_inst(uint16_t(op), {inst.operands[0], a, b, other}, inst.line));
     return true;
   }
 

@@ -8,15 +8,17 @@
 
 namespace glint::frontend::ptx {
 
-// Describes a result of mul, add or sub that was written without a rounding modifier. The map's keys are
-// registers.
+// Describes the results of a register that mul, add or sub writes without a rounding modifier. The map's keys
+// are registers.
+inline constexpr char kNotFree = 0;  // several of these ops write it, or one with a modifier or a guard
 struct FreeResult {
-  char op = 'm';       // first letter of mul, add or sub
+  char op = 'm';       // first letter of mul, add or sub, or kNotFree
   std::string suffix;  // ".f32", ".ftz.f32"
 };
 using FreeArithmetic = std::map<VirtualRegister, FreeResult>;
 
-// Fuses each such sum with a product of the same block and kind that nothing else reads. Where both operands
+// Fuses each such sum with a product of the same block and kind that nothing else reads, if the product's
+// factors still have their values. Where both operands
 // are products the left one is fused, as measured: on the hardware, `mul x, a, b; mul y, c, d; sub z, x, y`
 // is fma(a, b, -y).
 void contract(Draft& draft, const FreeArithmetic& free, VirtualProgram& program);

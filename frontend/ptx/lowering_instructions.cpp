@@ -109,12 +109,14 @@ void KernelLowering::note_free_arithmetic(const Instruction& inst,
   const std::string& op = inst.words[0];
   const bool ftz = inst.words.size() == 3 && inst.words[1] == "ftz";
   const auto type = type_of(inst.words.back());
-  if ((op != "mul" && op != "add" && op != "sub") || (inst.words.size() != 2 && !ftz) || !type ||
-      type->kind != 'f')
+  if ((op != "mul" && op != "add" && op != "sub") || !type || type->kind != 'f' ||
+      operands.front().kind != VirtualOperand::Kind::Register)
     return;
-  if (guard_ != kNoRegister || operands.front().kind != VirtualOperand::Kind::Register) return;
   const std::string suffix = (ftz ? ".ftz." : ".") + inst.words.back();
-  free_[operands.front().reg] = {op[0], suffix};
+  const bool is_free = (inst.words.size() == 2 || ftz) && guard_ == kNoRegister;
+  const auto [known, is_new] = free_.try_emplace(operands.front().reg, FreeResult{op[0], suffix});
+  if (!is_free || (!is_new && (known->second.op != op[0] || known->second.suffix != suffix)))
+    known->second.op = kNotFree;
 }
 
 void KernelLowering::lower_generic(const Instruction& inst) {

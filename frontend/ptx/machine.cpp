@@ -9,6 +9,10 @@
 #include <utility>
 
 #include "frontend/backend/def_use.h"
+#include "frontend/backend/peephole.h"
+#include "frontend/ptx/aggregation.h"
+#include "frontend/ptx/fusion.h"
+#include "frontend/ptx/unchanged.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -44,18 +48,6 @@ class Shaping {
   // values there.
   VirtualInst* definition(const VirtualOperand& o) const { return registers_.definition(o); }
   bool is_stable(const VirtualOperand& o) const { return is_constant(o) || definition(o); }
-  bool is_unchanged(const VirtualBlock& block, const VirtualOperand& o, const VirtualInst& from,
-                    const VirtualInst& to) const {
-    if (is_stable(o)) return true;
-    const VirtualInst *first = block.code.data(), *last = first + block.code.size();
-    if (!is_register(o) || std::less<>()(&from, first) || !std::less<>()(&from, last) || &from >= &to)
-      return false;
-    bool changes = false;
-    for (const VirtualInst* between = &from; between < &to; ++between)
-      for_each_def(*between, [&](VirtualRegister r) { changes |= r == o.reg; });
-    return !changes;
-  }
-
   // Returns the suffix that a comparison's name gets for the op that combines its result with another
   // predicate. It is null when there is no such op.
   const char* combination(uint16_t op) const {
@@ -75,8 +67,8 @@ class Shaping {
       const size_t type = name.rfind('.');
       if (!name.starts_with("setp.")) continue;
       const int row = isa::find_op(name.substr(0, type) + combined + name.substr(type));
-      if (row < 0 || !is_unchanged(block, setp->operands[1], *setp, inst) ||
-          !is_unchanged(block, setp->operands[2], *setp, inst))
+      if (row < 0 || !is_unchanged(registers_, block, setp->operands[1], *setp, inst) ||
+          !is_unchanged(registers_, block, setp->operands[2], *setp, inst))
         continue;
       inst.op = uint16_t(row);
       inst.operands = {inst.operands[0], VirtualOperand::of(new_predicate()), setp->operands[1],
@@ -296,6 +288,9 @@ void shape_for_machine(VirtualProgram& program) {
   negate_factors(program);
   Shaping(program).spread_products();
   Shaping(program).run();
+  simplify_code(program, Ops());
+  fuse_words(program);
+  aggregate_atomics(program);
 }
 
 }  // namespace glint::frontend::ptx

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "frontend/backend/slots.h"
+#include "frontend/backend/slow_paths.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -46,7 +47,8 @@ class CountedLoop {
 
  private:
   static bool can_be_copied(const VirtualInst& inst) {
-    return is_real(inst) && !is_guarded(inst) && isa::effect_row(row_of(inst).effect).freedom.may_copy;
+    return is_real(inst) && !is_guarded(inst) && !has_slow_path(inst.op) &&
+           isa::effect_row(row_of(inst).effect).freedom.may_copy;
   }
   // Returns false for instructions that involve other lanes. Unrolling could separate lanes of a warp that
   // were in one turn into different copies.

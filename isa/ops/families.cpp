@@ -16,6 +16,8 @@ std::span<const FamilyEntry> family_entries() {
       {"move", "These ops copy, select, and pack register pairs.", &move_rows},
       {"integer", "These ops are integer arithmetic of 16, 32 and 64 bits, logic and shifts.", &integer_rows},
       {"bits", "These ops are bit fields, counts, permutations and three-input logic.", &bits_rows},
+      {"fused", "These ops do two operations in one instruction, as GPUs do. PTX has no names for them.",
+       &fused_rows},
       {"packed",
        "These ops handle all bytes or half words of a register: video ops, dot products, pairs of integers.",
        &packed_rows},

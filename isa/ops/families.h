@@ -22,6 +22,7 @@ namespace glint::isa::GLINT_ISA_PATH {
 RowList move_rows();
 RowList integer_rows();
 RowList bits_rows();
+RowList fused_rows();
 RowList packed_rows();
 RowList carry_rows();
 RowList compare_rows();

@@ -72,9 +72,7 @@ class Runs {
   template <class Arguments>
   void run(const std::string& name, const pipeline::KernelGrid& grid, const Arguments& arguments,
            const std::string& launch = {}) {
-    const pipeline::CompilerParams& compiler = gpu_.compiler;
-    Launcher kernel(text_, "valid.ptx", name,
-                    {{compiler.max_registers, compiler.schedule, false, false, compiler.guard_latency}});
+    Launcher kernel(text_, "valid.ptx", name, pipeline::ptx_options(gpu_.compiler));
     arguments(kernel);
     kernel.world().set_grid(grid);
     kernel.set_arguments();

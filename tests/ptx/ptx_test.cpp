@@ -5,34 +5,12 @@
 #include <iterator>
 
 #include "isa/text.h"
-#include "tests/ptx/launcher.h"
+#include "tests/ptx/one_warp.h"
 #include "tests/support/catch.h"
 
 using namespace glint;
 
 namespace {
-
-const std::string kHead = ".version 7.0\n.target sm_70\n.address_size 64\n";
-
-// Returns a kernel `k` of one warp that stores the word %out of each thread to the buffer of its parameter.
-std::string storing(const std::string& body, const std::string& before = "") {
-  return kHead + before +
-         ".visible .entry k(.param .u64 to)\n{\n.reg .b32 %out, %lane, %r<40>; .reg .b64 %at, %rd<20>; .reg "
-         ".pred %p<20>; .reg .f32 %f<9>;\n"
-         "mov.u32 %lane, %tid.x; mov.u32 %out, 0;\n" +
-         body +
-         "\nld.param.u64 %at, [to]; mad.wide.u32 %at, %lane, 4, %at; st.global.u32 [%at], %out; ret;\n}\n";
-}
-
-std::vector<uint32_t> outputs(const std::string& text,
-                              const pipeline::KernelGrid& grid = {{1, 1, 1}, {32, 1, 1}, 0},
-                              const frontend::PtxOptions& options = {}) {
-  Launcher k(text, "test.ptx", "k", options);
-  const uint32_t threads = grid.block[0] * grid.block[1] * grid.block[2];
-  k.buffer(std::vector<uint32_t>(threads));
-  k.run_functional(grid);
-  return k.read<uint32_t>(0, threads);
-}
 
 std::string message_of(const std::string& text) {
   try {
@@ -41,22 +19,6 @@ std::string message_of(const std::string& text) {
     return error.what();
   }
   return "no error";
-}
-
-const pipeline::KernelGrid kWarp{{1, 1, 1}, {32, 1, 1}, 0};
-
-// Returns the kernel as it runs after shaping. Its results are checked against those of the unshaped text.
-std::string shaped(const std::string& body, const std::string& before = "") {
-  const std::string text = storing(body, before);
-  frontend::PtxOptions plain;
-  plain.shape = false;
-  CHECK(outputs(text) == outputs(text, kWarp, plain));
-  return isa::to_text(frontend::compile_ptx(text, "test.ptx", "k", {}).program);
-}
-size_t count(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
 }
 
 std::vector<uint32_t> expected(uint32_t (*of_lane)(uint32_t)) {
@@ -259,8 +221,8 @@ TEST_CASE(
 TEST_CASE("the negation of a product becomes that of a factor from elsewhere, to the bit") {
   const std::string text = shaped(
       "cvt.rn.f32.u32 %f6,%lane;sub.rn.f32 %f1,%f6,0f40A00000;mov.u32 %r1,0;mov.u32 %r2,0;\n"
-      "LOOP: cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 %f3,%f1,%f2;mul.f32 "
-      "%f4,%f2,%f2;sub.f32 %f5,%f4,%f3;mov.b32 %r3,%f5;\n"
+      "LOOP: cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 %f3,%f1,%f2;neg.f32 "
+      "%f4,%f3;add.rn.f32 %f5,%f4,%f2;mov.b32 %r3,%f5;\n"
       "mad.lo.u32 %r2,%r2,31,%r3;add.u32 %r1,%r1,1;setp.lt.u32 %p1,%r1,5;@%p1 bra LOOP;\nmov.u32 "
       "%out,%r2;\n");
   CHECK(count(text, "neg.f32") == 1);
@@ -422,4 +384,17 @@ TEST_CASE("the example kernels give the same on both machines, and what they sho
       saxpy.run_functional(lines);
     CHECK(saxpy.read<float>(1, 1000) == z);
   }
+}
+
+TEST_CASE("blocks of a grid start at their interval, whatever core they are on") {
+  Launcher k(storing("mov.u32 %out, 1;\n"), "test.ptx", "k");
+  k.buffer(std::vector<uint32_t>(32));
+  const auto cycles = [&](double interval) {
+    pipeline::GpuParams gpu;
+    gpu.core.block_interval = 0;
+    gpu.core.grid_interval = interval;
+    return k.run_timing({{33, 1, 1}, {32, 1, 1}, 0}, gpu);
+  };
+  // The last block starts long after the first has filled the caches.
+  CHECK(cycles(40.5) == cycles(20.25) + 648);  // 32 times 20.25
 }

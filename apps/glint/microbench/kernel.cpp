@@ -29,8 +29,7 @@ std::string text_of(const MicroKernel& kernel) {
 }
 
 uint64_t cycles_of(const MicroKernel& kernel, const pipeline::GpuParams& gpu) {
-  const frontend::PtxOptions options{
-      {gpu.compiler.max_registers, gpu.compiler.schedule, false, false, gpu.compiler.guard_latency}, true};
+  const frontend::PtxOptions options = pipeline::ptx_options(gpu.compiler);
   pipeline::KernelWorld world(frontend::compile_ptx(text_of(kernel), "microbench", "bench", options));
   const uint64_t bytes = std::max<uint64_t>(kernel.bytes, kernel.data.size() * 8);
   const Address data = world.memory().allocate("data", bytes);
@@ -41,7 +40,10 @@ uint64_t cycles_of(const MicroKernel& kernel, const pipeline::GpuParams& gpu) {
   world.memory().write(data, words.data(), words.size() * 8);
   world.set_grid({{kernel.blocks, 1, 1}, {kernel.threads, 1, 1}, 0});
   world.set_arguments({pipeline::KernelWorld::argument(data), pipeline::KernelWorld::argument(kernel.turns)});
-  return pipeline::TimingMachine(gpu, world.world, false).run({});
+  // Chains of dependent misses run for longer than warps may that seem to spin.
+  pipeline::GpuParams patient = gpu;
+  patient.core.livelock_budget = patient.core.turnover_budget = 0;
+  return pipeline::TimingMachine(patient, world.world, false).run({});
 }
 
 double cycles_per_body(MicroKernel kernel, uint32_t few, uint32_t many, const pipeline::GpuParams& gpu) {

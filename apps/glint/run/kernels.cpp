@@ -44,9 +44,7 @@ void Kernels::compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu
   std::unique_ptr<pipeline::KernelWorld>& made = worlds_[{launch.kernel, launch.entry, launch.contract}];
   if (made) return;
   const std::string text = read_text(launch.kernel);
-  const frontend::PtxOptions compiler{
-      {gpu.compiler.max_registers, gpu.compiler.schedule, false, false, gpu.compiler.guard_latency},
-      launch.contract};
+  const frontend::PtxOptions compiler = pipeline::ptx_options(gpu.compiler, launch.contract);
   made = std::make_unique<pipeline::KernelWorld>(
       frontend::compile_ptx(text, launch.kernel, launch.entry, compiler), memory_);
   made->world.on_fault = on_fault;
