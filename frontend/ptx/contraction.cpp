@@ -103,7 +103,7 @@ class Contraction {
     if (subtracts && left && !is_constant(other) && suffix == ".f32") {
       op = isa::find_op("fms.rn.f32");
     } else if (subtracts && right && !is_constant(a) && !is_constant(b) && suffix == ".f32") {
-      op = isa::find_op("fnma.rn.f32");
+      op = isa::find_op("nfma.rn.f32");
     } else if (subtracts) {
       VirtualOperand& changed = left ? other : is_constant(b) ? b : a;
       changed = negated(changed, suffix, inst, out);

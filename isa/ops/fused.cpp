@@ -53,7 +53,7 @@ constexpr auto kRows = joined_rows(
         [](float a, float b, float c) { return canonical(__builtin_fmaf(a, b, -c)); },
         {{{kOne, kTwo, kOne}, kOne}, {{0x3f80'0001, 0x3f80'0001, 0x3f80'0002}, 0x2880'0000}}),
     ternary<float>(
-        "fnma.rn.f32", Unit::Fp32,
+        "nfma.rn.f32", Unit::Fp32,
         "Subtracts the product of the first two sources from the third exactly, and rounds to nearest even.",
         [](float a, float b, float c) { return canonical(__builtin_fmaf(-a, b, c)); },
         {{{kOne, kTwo, kOne}, kOne | kSign}, {{0x3f80'0001, 0x3f80'0001, 0x3f80'0002}, 0xa880'0000}}),

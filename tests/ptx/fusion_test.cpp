@@ -94,7 +94,7 @@ TEST_CASE("products are fused into sums whose registers a loop writes, to the bi
       "add.u32 %r1,%r1,1;setp.lt.u32 %p1,%r1,3;@%p1 bra LOOP;\nmov.b32 %out,%f2;\n";
   const std::string code = shaped(text);
   CHECK(count(code, "mul.rn.f32") == 0);
-  CHECK(count(code, "fms.rn.f32") == count(code, "fnma.rn.f32"));
+  CHECK(count(code, "fms.rn.f32") == count(code, "nfma.rn.f32"));
   CHECK(count(code, "fms.rn.f32") >= 1);
   frontend::PtxOptions apart;
   apart.contract = false;
