@@ -71,7 +71,7 @@ constexpr OpTime kTimes[] = {
     {"div.s64", 331, 120, Unit::Count, false, 70},
     {"div.u64", 331, 120, Unit::Count, false, 70},  // the intervals are guesses
     {"rem.s64", 331, 120, Unit::Count, false, 70},  // the intervals are guesses
-    {"rem.u64", 331, 120, Unit::Count, false, 58},  // counted in two kernels of bench/probes
+    {"rem.u64", 331, 120, Unit::Count, false, 58},  // the interval is a guess; the count is from bench/probes
     // Comparisons, minima and the like run on the integer pipe.
     {"setp.*.f32", 4, 2, Unit::Int},
     {"set.*.f32", 4, 2, Unit::Int},
