@@ -6,6 +6,7 @@
 
 #include "frontend/backend/def_use.h"
 #include "frontend/backend/liveness.h"
+#include "frontend/backend/unchanged.h"
 
 namespace glint::frontend {
 namespace {
@@ -48,16 +49,9 @@ class Sweep {
     return is_constant(o) || definition(o) != nullptr ||
            (o.kind == Operand::Kind::Special && is_fixed(o.special));
   }
-  // Returns true when the operand has the same value at `inst` as at `source`. It does when it is stable, or
-  // when both instructions are in one block and nothing between them writes it.
+  // Returns true when the operand has the same value at `inst` as at `source`.
   bool is_unchanged(const Operand& o, const VirtualInst& source, const VirtualInst& inst) const {
-    if (is_stable(o)) return true;
-    const VirtualInst* const first = block_->code.data();
-    if (!is_register(o) || &source < first || &source >= &inst) return false;
-    bool changes = false;
-    for (const VirtualInst* between = &source; between < &inst; ++between)
-      for_each_def(*between, [&](VirtualRegister r) { changes |= r == o.reg; });
-    return !changes;
+    return is_stable(o) || frontend::is_unchanged(registers_, *block_, o, source, inst);
   }
   bool is_used_once(const Operand& o) const { return registers_.is_used_once(o); }
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "frontend/backend/def_use.h"
-#include "frontend/ptx/unchanged.h"
+#include "frontend/backend/unchanged.h"
 
 namespace glint::frontend::ptx {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "frontend/backend/def_use.h"
 #include "frontend/backend/peephole.h"
+#include "frontend/backend/unchanged.h"
 #include "frontend/ptx/aggregation.h"
 #include "frontend/ptx/fusion.h"
-#include "frontend/ptx/unchanged.h"
 
 namespace glint::frontend::ptx {
 namespace {

@@ -1,10 +1,10 @@
 // Says whether a value that one instruction read is still there for another.
 // SPDX-License-Identifier: Apache-2.0
-#include "frontend/ptx/unchanged.h"
+#include "frontend/backend/unchanged.h"
 
 #include <functional>
 
-namespace glint::frontend::ptx {
+namespace glint::frontend {
 
 bool is_unchanged(const DefUse& registers, const VirtualBlock& block, const VirtualOperand& o,
                   const VirtualInst& from, const VirtualInst& to) {
@@ -18,4 +18,4 @@ bool is_unchanged(const DefUse& registers, const VirtualBlock& block, const Virt
   return !changes;
 }
 
-}  // namespace glint::frontend::ptx
+}  // namespace glint::frontend
