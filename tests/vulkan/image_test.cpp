@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
@@ -38,49 +40,41 @@ VkDescriptorSet set_with_image(Client& client, const ComputePipeline& pipeline, 
   return set;
 }
 
-TEST_CASE("what a shader stores to an image is what a copy brings to a buffer", "[portable]") {
+// Returns what a copy brings of an image to which a shader has stored x, y and 255 - x as red, green and
+// blue. `layout` is the image's declaration in the shader.
+std::vector<uint32_t> stored_picture(VkFormat format, const std::string& layout, VkExtent3D extent) {
   Client client;
-  const VkExtent3D extent{16, 8, 1};
-  const BoundImage image = client.image(VK_FORMAT_R8G8B8A8_UNORM, extent);
-  const MappedBuffer out = client.buffer(16 * 8 * 4);
-  const ComputePipeline pipeline = client.pipeline(
-      "#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
-      "layout(set = 0, binding = 1, rgba8) uniform writeonly image2D picture;\n"
-      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
-      "  imageStore(picture, p, vec4(p.x, p.y, 255 - p.x, 255) / 255.0); }\n",
-      {{kStorage, kStorageImage}});
+  const BoundImage image = client.image(format, extent);
+  const size_t texels = extent.width * extent.height;
+  const MappedBuffer out = client.buffer(texels * 4);
+  const ComputePipeline pipeline =
+      client.pipeline("#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\n" + layout +
+                          " uniform writeonly image2D picture;\n"
+                          "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+                          "  imageStore(picture, p, vec4(p.x, p.y, 255 - p.x, 255) / 255.0); }\n",
+                      {{kStorage, kStorageImage}});
   const VkDescriptorSet set =
       set_with_image(client, pipeline, out, kStorageImage, {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
 
-  REQUIRE(client.dispatch(pipeline, set, {2, 1, 1}) == VK_SUCCESS);
+  REQUIRE(client.dispatch(pipeline, set, {extent.width / 8, extent.height / 8, 1}) == VK_SUCCESS);
   REQUIRE(client.download(image, out, extent) == VK_SUCCESS);
+  const auto words = out.as<uint32_t>().first(texels);
+  return {words.begin(), words.end()};
+}
 
+TEST_CASE("what a shader stores to an image is what a copy brings to a buffer", "[portable]") {
+  const std::vector<uint32_t> out =
+      stored_picture(VK_FORMAT_R8G8B8A8_UNORM, "layout(set = 0, binding = 1, rgba8)", {16, 8, 1});
   for (uint32_t y = 0; y < 8; ++y)
-    for (uint32_t x = 0; x < 16; ++x)
-      REQUIRE(out.as<uint32_t>()[y * 16 + x] == (0xff000000 | (255 - x) << 16 | y << 8 | x));
+    for (uint32_t x = 0; x < 16; ++x) REQUIRE(out[y * 16 + x] == (0xff000000 | (255 - x) << 16 | y << 8 | x));
 }
 
 // Ray tracers store to an image of their swapchain's format and copy it.
 TEST_CASE("what a shader stores to an image of a swapchain's format has its channels in order") {
-  Client client;
-  const VkExtent3D extent{8, 8, 1};
-  const BoundImage image = client.image(VK_FORMAT_B8G8R8A8_UNORM, extent);
-  const MappedBuffer out = client.buffer(8 * 8 * 4);
-  const ComputePipeline pipeline = client.pipeline(
-      "#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
-      "layout(set = 0, binding = 1) uniform writeonly image2D picture;\n"
-      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
-      "  imageStore(picture, p, vec4(p.x, p.y, 255 - p.x, 255) / 255.0); }\n",
-      {{kStorage, kStorageImage}});
-  const VkDescriptorSet set =
-      set_with_image(client, pipeline, out, kStorageImage, {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
-
-  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
-  REQUIRE(client.download(image, out, extent) == VK_SUCCESS);
-
+  const std::vector<uint32_t> out =
+      stored_picture(VK_FORMAT_B8G8R8A8_UNORM, "layout(set = 0, binding = 1)", {8, 8, 1});
   for (uint32_t y = 0; y < 8; ++y)
-    for (uint32_t x = 0; x < 8; ++x)
-      REQUIRE(out.as<uint32_t>()[y * 8 + x] == (0xff000000 | x << 16 | y << 8 | (255 - x)));
+    for (uint32_t x = 0; x < 8; ++x) REQUIRE(out[y * 8 + x] == (0xff000000 | x << 16 | y << 8 | (255 - x)));
 }
 
 TEST_CASE("a linear sampler blends texels, and the view's swizzle orders their channels", "[portable]") {
