@@ -212,7 +212,7 @@ class Bench(BenchTest):
         out, err = bench.communicate(timeout=60)
         if "PARK_PT" in self.metrics():
             self.skipTest("the second workload was faster than the signal")
-        self.assertEqual(bench.returncode, 1, out + err)
+        self.assertEqual(bench.returncode, 130, out + err)
         self.assertIn("--resume", err)
         self.assertEqual(list(self.metrics()), ["SHIP_SH"])
         self.assertFalse((self.folder / "out/PARK_PT/workload.json").exists())

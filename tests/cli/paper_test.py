@@ -33,16 +33,26 @@ class Paper(GlintTest):
         self.assertIn(" files/mobile ", self.glint("paper", "--list", "--assets", ".").stdout)
         self.assertFalse((self.folder / "out").exists())
 
-    def test_a_trial_that_is_killed_goes_on_where_it_was_and_leaves_every_table_and_figure(self):
-        process = subprocess.Popen([GLINT, *TRIAL], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, env={**os.environ, "GLINT_ASSETS": ""})
-        first = self.folder / "out/runs/generated/mobile"
+    def end_after(self, name, signal_number):
+        """Starts the trial, sends the signal to all its processes once a set is complete, and returns its exit code and stderr."""
+        process = subprocess.Popen([GLINT, *TRIAL], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, "GLINT_ASSETS": ""})
+        mark = self.folder / "out/runs" / name / "set.json"
         limit = time.monotonic() + 200
-        while not (first / "set.json").exists() and process.poll() is None and time.monotonic() < limit:
+        while not mark.exists() and process.poll() is None and time.monotonic() < limit:
             time.sleep(0.05)
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)  # with all that it has started
-        process.wait()
-        self.assertTrue((first / "set.json").exists())
+        self.assertIsNone(process.poll(), "the trial was faster than the signal")
+        os.killpg(process.pid, signal_number)
+        errors = process.communicate(timeout=60)[1]
+        self.assertTrue(mark.exists())
+        return process.returncode, errors
+
+    def test_a_trial_that_is_stopped_and_killed_goes_on_where_it_was_and_leaves_every_table_and_figure(self):
+        code, errors = self.end_after("generated/mobile", signal.SIGINT)
+        self.assertEqual(code, 130, errors)
+        self.assertIn("the same command goes on from here", errors)
+        self.assertFalse((self.folder / "out/runs/generated/vulkan-sim-mobile/set.json").exists(), "a set began after Ctrl-C")
+        first = self.folder / "out/runs/generated/mobile"
+        self.assertEqual(self.end_after("generated/desktop", signal.SIGKILL)[0], -signal.SIGKILL)
         ended = {path: path.stat().st_mtime_ns for path in first.glob("*/workload.json")}
         self.assertEqual(len(ended), 3)
         self.assertRegex(self.glint(*TRIAL, "--list", GLINT_ASSETS="").stdout, r"(?m)^done +generated/mobile ")

@@ -15,6 +15,7 @@
 #include "apps/glint/bench/view.h"
 #include "apps/glint/options/output.h"
 #include "apps/glint/run/recorded_run.h"
+#include "apps/glint/run/stop_signals.h"
 #include "base/host_threads.h"
 #include "report/files/folder_lock.h"
 #include "report/files/run_directory.h"
@@ -52,9 +53,9 @@ class Bench {
     take_complete();
     limits();
     announce();
-    const bool whole = run_chosen(directory);
+    const int signal = run_chosen(directory);
     write_metrics(directory);  // The metrics are written even when nothing was left to run.
-    return conclude(directory, whole);
+    return conclude(directory, signal);
   }
 
  private:
@@ -139,7 +140,8 @@ class Bench {
       print_output("fewer workloads run together when they would not fit\n");
   }
 
-  bool run_chosen(const report::RunDirectory& directory) {
+  // Returns 0, or the number of the signal that ended the bench early.
+  int run_chosen(const report::RunDirectory& directory) {
     std::vector<Process> processes;
     std::vector<std::string> names;
     for (const size_t i : chosen_) {
@@ -151,10 +153,10 @@ class Bench {
     BenchView view(terminal_, is_live_, chosen_.size());
     pool.on_time = [&] { view.draw(pool, names); };
     pool.on_end = [&](size_t index) { take(chosen_[index], pool.processes()[index], view, directory); };
-    const bool whole = pool.run();
+    const int signal = pool.run();
     for (size_t k = 0; k < chosen_.size(); ++k)
       plan_.tasks[chosen_[k]].process.state = pool.processes()[k].state;
-    return whole;
+    return signal;
   }
 
   // Handles a process that has ended: prints its figures, marks it, and writes the metrics up to now.
@@ -197,7 +199,7 @@ class Bench {
     directory.write(kBenchRecord, bench_record(list));
   }
 
-  Exit conclude(const report::RunDirectory& directory, bool whole) const {
+  Exit conclude(const report::RunDirectory& directory, int signal) const {
     size_t done = 0, failed = 0;
     std::string names, partial;
     for (const BenchTask& task : plan_.tasks) {
@@ -215,7 +217,7 @@ class Bench {
     if (failed)
       fmt::print(stderr, "error: {} failed:{}\n  note: log.txt in the directory of each says why\n", failed,
                  names);
-    if (!whole)
+    if (signal)
       fmt::print(
           stderr,
           "error: the bench was interrupted\n  note: the same command with --resume goes on from here\n");
@@ -225,7 +227,8 @@ class Bench {
           "error: --max-cycles has ended these launches, which metrics.csv does not have:{}\n  note: the "
           "directory of each holds what it did up to then\n",
           partial);
-    if (failed || !whole) return Exit::Failure;
+    if (signal) return Exit(exit_code_of(signal));
+    if (failed) return Exit::Failure;
     return partial.empty() ? Exit::Ok : kReachedMaxCycles;
   }
 

@@ -76,7 +76,7 @@ double ProcessPool::time_left() const {
   return elapsed() * (all - done) / done;
 }
 
-bool ProcessPool::run() {
+int ProcessPool::run() {
   const sigset_t set = watched_signals();
   sigset_t before;
   ::sigprocmask(SIG_BLOCK, &set, &before);
@@ -84,7 +84,7 @@ bool ProcessPool::run() {
   start_ = Clock::now();
   Clock::time_point told{};
   for (;;) {
-    if (!interrupted_) start_what_fits();
+    if (!stopped_by_) start_what_fits();
     if (children_.empty()) break;
     listen(signals);
     reap();
@@ -95,7 +95,7 @@ bool ProcessPool::run() {
   }
   ::close(signals);
   ::sigprocmask(SIG_SETMASK, &before, nullptr);
-  return !interrupted_;
+  return stopped_by_;
 }
 
 // Starts the heaviest waiting processes that fit beside the running ones.
@@ -147,7 +147,7 @@ void ProcessPool::listen(int signals) {
   if (::poll(watched.data(), watched.size(), int(kWakeUp.count())) <= 0) return;
   signalfd_siginfo info;
   while (::read(signals, &info, sizeof info) == ssize_t(sizeof info))
-    if (info.ssi_signo != uint32_t(SIGCHLD)) stop_all();
+    if (info.ssi_signo != uint32_t(SIGCHLD)) stop_all(int(info.ssi_signo));
   bool is_hung_up = false;
   for (size_t i = 0; i < children_.size(); ++i) {
     if (watched[i + 1].revents & POLLIN) hear(children_[i]);
@@ -195,13 +195,13 @@ void ProcessPool::end(size_t at, int status, uint64_t peak_bytes) {
   const bool is_partial = WIFEXITED(status) && WEXITSTATUS(status) == int(kReachedMaxCycles);
   process.state = process.end.empty() ? Process::State::Done
                   : is_partial        ? Process::State::Partial
-                  : interrupted_      ? Process::State::Stopped
+                  : stopped_by_       ? Process::State::Stopped
                                       : Process::State::Failed;
   if (on_end) on_end(child.index);
 }
 
-void ProcessPool::stop_all() {
-  interrupted_ = true;
+void ProcessPool::stop_all(int signal) {
+  if (!stopped_by_) stopped_by_ = signal;
   for (const Child& child : children_) ::kill(child.pid, SIGTERM);
 }
 

@@ -41,9 +41,9 @@ class ProcessPool {
   std::function<void(size_t index)> on_end;
   std::function<void()> on_time;  // is called at most ten times a second
 
-  // Runs until all processes have ended. Returns false when SIGINT, SIGTERM or SIGHUP came. Processes that
-  // were running then are Stopped.
-  bool run();
+  // Runs until all processes have ended. Returns 0, or the number of the signal (SIGINT, SIGTERM or SIGHUP)
+  // that ended it early. Processes that were running then are Stopped.
+  int run();
 
   const std::vector<Process>& processes() const { return processes_; }
   std::vector<size_t> running() const;
@@ -70,13 +70,13 @@ class ProcessPool {
   void hear(Child& child);
   void reap();
   void end(size_t child, int status, uint64_t peak_bytes);
-  void stop_all();
+  void stop_all(int signal);
 
   std::vector<Process> processes_;
   PoolLimits limits_;
   std::vector<Child> children_;
   Clock::time_point start_ = Clock::now();
-  bool interrupted_ = false;
+  int stopped_by_ = 0;  // number of the first signal that came, or 0
 };
 
 }  // namespace glint::app

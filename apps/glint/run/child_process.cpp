@@ -12,12 +12,12 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "apps/glint/run/stop_signals.h"
 #include "base/diagnostics.h"
 
 namespace glint::app {
 namespace {
 
-constexpr int kSignaled = 128;  // A shell adds the signal's number to this (POSIX).
 constexpr timespec kBetweenCalls{0, 200'000'000};
 
 // Holds back the signals that end a process while it lives.
@@ -74,8 +74,8 @@ int run_child(const std::vector<std::string>& command,
   for (int status = 0;;) {
     const pid_t ended = ::waitpid(process, &status, WNOHANG);
     if (ended == process && WIFEXITED(status)) return WEXITSTATUS(status);
-    if (ended == process && WIFSIGNALED(status)) return kSignaled + WTERMSIG(status);
-    if (ended < 0 && errno != EINTR) return kSignaled;
+    if (ended == process && WIFSIGNALED(status)) return exit_code_of(WTERMSIG(status));
+    if (ended < 0 && errno != EINTR) return exit_code_of(0);
     const int signal = signals.wait();
     if (signal == SIGTERM || signal == SIGHUP) ::kill(process, signal);
     while_running();

@@ -30,8 +30,6 @@ report::RunInfo new_run_info(const Session& session, const pipeline::GpuParams& 
 
 namespace {
 
-constexpr int kShellSignal = 128;  // A shell adds the signal's number to this (POSIX).
-
 // Adds why and when a launch was ended early.
 void add_part(const pipeline::RenderResult& result, int signal, report::RunInfo& info) {
   const pipeline::LaunchProgress& at = result.progress;
@@ -40,7 +38,7 @@ void add_part(const pipeline::RenderResult& result, int signal, report::RunInfo&
                : signal == SIGINT ? "SIGINT"
                                   : "SIGTERM",
                at.cycles, at.ended_warps, at.num_warps, at.where};
-  info.exit = is_stopped ? kShellSignal + signal : int(kReachedMaxCycles);
+  info.exit = is_stopped ? exit_code_of(signal) : int(kReachedMaxCycles);
   info.message = fmt::format("the launch was ended early{}, by {}: {} of {} warps have ended{}{}",
                              at.cycles ? fmt::format(" at cycle {}", at.cycles) : "",
                              is_stopped ? name_of_signal(signal) : "--max-cycles", at.ended_warps,

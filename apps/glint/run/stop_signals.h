@@ -21,6 +21,11 @@ class StopSignals {
   }, before_terminate_{};
 };
 
+// Returns the exit code of a command that a signal has ended: 128 and its number, as a shell says it (POSIX).
+constexpr int exit_code_of(int signal) {
+  return 128 + signal;
+}
+
 // Returns what users call a signal: "SIGINT (Ctrl-C)".
 const char* name_of_signal(int signal);
 

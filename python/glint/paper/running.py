@@ -50,14 +50,15 @@ def text_of(seconds: float) -> str:
 def run(runs: Runs, glint: str, jobs: int, out: TextIO = sys.stderr) -> list[str]:
     """Runs every set, and returns the names of those that failed. What is complete is only checked. Ctrl-C goes to the running command, which keeps what has ended."""
     failed: list[str] = []
-    begin, before, done = time.monotonic(), sum(one.weight for one in runs.sets if runs.is_done(one)), 0.0
-    total = sum(one.weight for one in runs.sets) - before
+    spent, done = 0.0, 0.0  # seconds and weight of the sets that this call has run
+    total = sum(one.weight for one in runs.sets if not runs.is_done(one))
     for number, one in enumerate(runs.sets, 1):
         fresh = not runs.is_done(one)
         left = ""
         if fresh and done > 0:
-            left = f", about {text_of((time.monotonic() - begin) * (total - done) / done)} left"
+            left = f", about {text_of(spent * (total - done) / done)} left"
         print(f"[{number}/{len(runs.sets)}] {one.name} ({one.shows}){left}", file=out, flush=True)
+        begin = time.monotonic()
         code = _call(runs.command(glint, one, jobs), quiet=not fresh)
         if code < 0 or code in (130, 143):
             raise KeyboardInterrupt
@@ -65,7 +66,9 @@ def run(runs: Runs, glint: str, jobs: int, out: TextIO = sys.stderr) -> list[str
             failed.append(one.name)
         elif fresh:
             runs.mark(one)
-        done += one.weight if fresh else 0
+        if fresh:
+            done += one.weight
+            spent += time.monotonic() - begin
     return failed
 
 
