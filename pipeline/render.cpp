@@ -4,7 +4,7 @@
 
 #include "pipeline/device.h"
 #include "pipeline/run_stats.h"
-#include "pipeline/scene_world.h"
+#include "pipeline/scene_launch.h"
 
 namespace glint::pipeline {
 RenderResult::RenderResult() = default;
@@ -37,12 +37,10 @@ RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timi
   return device.run(world, {timing, no_skip, threads, Caches::Cold, observe}, watch);
 }
 
-namespace {
-
-RenderResult render_world(SceneWorld& scene, const RenderJob& job) {
+RenderResult launch_scene(Device& device, SceneWorld& scene, const RenderJob& job, Caches caches) {
   scene.world.on_fault = job.on_fault;
   RenderResult result =
-      run_world(scene.world, job.gpu, job.timing, job.no_skip, job.threads, job.watch, job.observe);
+      device.run(scene.world, {job.timing, job.no_skip, job.threads, caches, job.observe}, job.watch);
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;
@@ -54,16 +52,16 @@ RenderResult render_world(SceneWorld& scene, const RenderJob& job) {
   return result;
 }
 
-}  // namespace
-
 RenderResult render(const RenderJob& job) {
   SceneWorld scene(job);
-  return render_world(scene, job);
+  Device device(job.gpu);
+  return launch_scene(device, scene, job, Caches::Cold);
 }
 
 RenderResult render_and_drain(RenderJob& job) {
   SceneWorld scene(job, SceneWorld::Drain{job.scene});
-  return render_world(scene, job);
+  Device device(job.gpu);
+  return launch_scene(device, scene, job, Caches::Cold);
 }
 
 }  // namespace glint::pipeline

@@ -26,8 +26,14 @@ namespace glint::pipeline {
 using Workload = scenes::Workload;
 class StructureCache;
 
+// Says what becomes of the acceleration structures when a scene moves: all are built anew, or the trees that
+// were built for the first frame are fitted to where everything is (rtunit/structure/refit.h). With
+// RefitBottom only bottom levels are fitted, and the top level is built anew.
+enum class StructureUpdate : uint8_t { Rebuild, Refit, RefitBottom };
+
 struct RenderJob {
   scenes::Scene scene;
+  StructureUpdate update = StructureUpdate::Rebuild;  // of a scene that moves
   Workload workload = Workload::PathTracing;
   scenes::RenderParams frame;
   GpuParams gpu;

@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "base/stats.h"
 #include "pipeline/functional_machine.h"
@@ -35,12 +36,15 @@ class RunStats {
   explicit RunStats(std::unique_ptr<TimingMachine> machine) : timing_(std::move(machine)) {}
   stats::Group& root() { return timing_ ? timing_->root() : *functional_; }
   const stats::Group& root() const { return timing_ ? timing_->root() : *functional_; }
+  // Keeps a group of the tree that is no part of the machine.
+  void keep(std::unique_ptr<stats::Group> group) { others_.push_back(std::move(group)); }
   // Returns the machine that ran, or null after a functional run.
   const TimingMachine* timing() const { return timing_.get(); }
 
  private:
   std::unique_ptr<FunctionalStats> functional_;
   std::unique_ptr<TimingMachine> timing_;
+  std::vector<std::unique_ptr<stats::Group>> others_;
 };
 
 }  // namespace glint::pipeline

@@ -52,10 +52,6 @@ void give_back_memory() {
 #endif
 }
 
-std::string name_of_model(const Model& model) {
-  return "bottom level " + model.name;
-}
-
 template <class Value>
 void copy(const std::vector<Value>& from, Value* to, uint32_t threads) {
   constexpr size_t kRange = 65536;  // values that a thread copies at a time
@@ -120,7 +116,9 @@ SceneWorld::SceneWorld(const RenderJob& job, scenes::Scene* drain) {
   upload_geometry(job, drain);
   upload_images(job, drain);
   const std::vector<std::byte> frame = scenes::uniform_block(job.scene, job.workload, job.frame);
-  bind(kFrame, upload("binding 3 (frame)", frame.data(), frame.size()), frame.size());
+  frame_ = upload("binding 3 (frame)", frame.data(), frame.size());
+  bind(kFrame, frame_, frame.size());
+  if (job.scene.motion) moving_ = std::make_unique<Moving>(job);
   build_structures(job);
   mark_all_unbound(world, bound_);  // Shaders of a user's folder may ask for more.
 }
@@ -134,7 +132,7 @@ void SceneWorld::link_shaders(const RenderJob& job) {
   world.raygen = shaders.raygen;
   world.miss = {shaders.miss};
   world.hit = {shaders.triangle, shaders.sphere};
-  world.local_bytes = stack_bytes(image_, world.max_trace_depth, 0);
+  world.local_bytes = local_bytes_ = stack_bytes(image_, world.max_trace_depth, 0);
   exec::place_plain_table(world, memory_.allocate("shader binding table", exec::plain_table_bytes(world)));
 }
 
@@ -165,7 +163,7 @@ void SceneWorld::upload_geometry(const RenderJob& job, scenes::Scene* drain) {
   uint64_t num_vertices = 0, num_indices = 0;
   for (const Model& model : scene.models) {
     offsets.push_back({uint32_t(num_indices), uint32_t(num_vertices)});
-    spheres.push_back(model.is_procedural() ? scenes::Vec4(model.center, model.radius) : scenes::Vec4(0));
+    spheres.push_back(sphere_of(model));
     num_vertices += model.vertices.size(), num_indices += model.indices.size();
   }
   const std::span vertices = bind_new<scenes::Vertex>(kVertices, "vertices", num_vertices);
@@ -188,7 +186,8 @@ void SceneWorld::upload_geometry(const RenderJob& job, scenes::Scene* drain) {
   };
   buffer(kMaterials, "materials", scene.materials);
   buffer(kOffsets, "offsets", offsets);
-  buffer(kSpheres, "spheres", spheres);
+  spheres_ = bind_new<scenes::Vec4>(kSpheres, "spheres", spheres.size());
+  std::copy(spheres.begin(), spheres.end(), spheres_.begin());
 }
 
 void SceneWorld::upload_images(const RenderJob& job, scenes::Scene* drain) {
@@ -222,32 +221,39 @@ void SceneWorld::upload_images(const RenderJob& job, scenes::Scene* drain) {
   bind(kTextures, first, world.images.size() - first);
 }
 
-rt::EncodedStructure SceneWorld::encode_bottom(const RenderJob& job, size_t index, uint32_t threads) const {
+void SceneWorld::describe_bottom(const RenderJob& job, size_t index, BottomInput& out) const {
   const Model& model = job.scene.models[index];
-  rt::Geometry geometry;
-  rt::Bounds box;
+  rt::Geometry& geometry = out.level.geometries.emplace_back();
   if (model.is_procedural()) {
-    box = sphere_bounds(model);
-    geometry.aabbs = {&box, 1};
+    out.box = sphere_bounds(model);
+    geometry.aabbs = {&out.box, 1};
     geometry.opaque = true;
-  } else {
-    geometry.positions = std::as_bytes(uploaded_[index].vertices);
-    geometry.stride = sizeof(scenes::Vertex);
-    geometry.indices = uploaded_[index].indices;
-    geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
-    geometry.no_duplicate_any_hit = true;
+    return;
   }
+  geometry.positions = std::as_bytes(uploaded_[index].vertices);
+  geometry.stride = sizeof(scenes::Vertex);
+  geometry.indices = uploaded_[index].indices;
+  geometry.opaque = false;  // The original sets NO_DUPLICATE_ANY_HIT and not OPAQUE.
+  geometry.no_duplicate_any_hit = true;
+}
+
+rt::EncodedStructure SceneWorld::encode_bottom(const RenderJob& job, size_t index, uint32_t threads,
+                                               rt::KeptTree* kept) const {
+  const Model& model = job.scene.models[index];
+  BottomInput input;
+  describe_bottom(job, index, input);
   rt::Micromaps micromaps;
   // Without an alpha test the workload's rays ask no any-hit shader.
   if (const auto format = world.filter ? world.filter->micromaps() : std::nullopt;
       format && job.scene.alpha_test && !model.is_procedural()) {
     micromaps = bake(job, index, *format);
-    geometry.micromaps = &micromaps;
+    input.level.geometries[0].micromaps = &micromaps;
   }
-  const rt::BottomLevel level{{geometry}};
   const std::string name = name_of_model(model);
-  return job.structure_cache ? job.structure_cache->encode(name, level, job.gpu.bvh, threads)
-                             : rt::encode_bottom(name, level, job.gpu.bvh, threads);
+  // What moves is another structure in each frame, which no later run needs.
+  return job.structure_cache && !deforms(index)
+             ? job.structure_cache->encode(name, input.level, job.gpu.bvh, threads)
+             : rt::encode_bottom(name, input.level, job.gpu.bvh, threads, kept);
 }
 
 rt::Micromaps SceneWorld::bake(const RenderJob& job, size_t index, const rt::MicromapFormat& format) const {
@@ -258,7 +264,7 @@ rt::Micromaps SceneWorld::bake(const RenderJob& job, size_t index, const rt::Mic
 // Builds the bottom levels on all threads, and places them in the order of the models, so that addresses do
 // not depend on threads. The largest models come first, each on all threads, because one thread would still
 // build them when the others have nothing left to do.
-std::vector<rt::StructureInfo> SceneWorld::build_bottoms(const RenderJob& job) {
+void SceneWorld::build_bottoms(const RenderJob& job) {
   const std::vector<Model>& models = job.scene.models;
   const uint32_t threads = host_threads(job.threads);
   uint64_t all = 0;
@@ -267,26 +273,23 @@ std::vector<rt::StructureInfo> SceneWorld::build_bottoms(const RenderJob& job) {
   for (size_t i = 0; threads > 1 && i < models.size(); ++i)
     if (const uint64_t primitives = num_primitives(models[i], uploaded_[i].indices);
         primitives > kLeastLarge && primitives > all / (4 * threads))
-      large.emplace(i, encode_bottom(job, i, threads));
-  std::vector<rt::StructureInfo> bottoms;
+      large.emplace(i, encode_bottom(job, i, threads, kept_tree(i)));
   OrderedWork<rt::EncodedStructure> work(models.size(), threads);
   work.run(
       [&](size_t i) {
         const auto built = large.find(i);
-        return built != large.end() ? std::move(built->second) : encode_bottom(job, i, 1);
+        return built != large.end() ? std::move(built->second) : encode_bottom(job, i, 1, kept_tree(i));
       },
       [&](size_t i, rt::EncodedStructure&& bottom) {
-        bottoms.push_back(rt::place(memory_, name_of_model(models[i]), std::move(bottom)));
+        bottoms_.push_back(place(name_of_model(models[i]), std::move(bottom), room_of_bottom(job, i)));
         structures.procedurals += models[i].is_procedural();
         structures.triangles += models[i].is_procedural() ? 0 : uploaded_[i].indices.size() / 3;
-        structures.bytes += bottoms.back().bytes;
-        structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
+        structures.bytes += bottoms_.back().bytes;
+        structures.bottom_depth = std::max(structures.bottom_depth, bottoms_.back().depth);
       });
-  return bottoms;
 }
 
-void SceneWorld::build_structures(const RenderJob& job) {
-  const std::vector<rt::StructureInfo> bottoms = build_bottoms(job);
+std::vector<rt::Instance> SceneWorld::place_instances(const RenderJob& job) {
   std::vector<rt::Instance> instances;
   for (const scenes::Instance& placed : scenes::instances_of(job.scene)) {
     rt::Instance instance;
@@ -296,13 +299,25 @@ void SceneWorld::build_structures(const RenderJob& job) {
     instance.flags = rt::instance_flag::kFacingCullDisable;
     instances.push_back(instance);
   }
-  const rt::StructureInfo top = rt::build_top(memory_, "top level", instances, bottoms, job.gpu.bvh);
-  structures.bytes += top.bytes;
-  structures.top_depth = top.depth;
-  structures.bottom_levels = bottoms.size();
+  return instances;
+}
+
+void SceneWorld::build_structures(const RenderJob& job) {
+  build_bottoms(job);
+  const std::vector<rt::Instance> instances = place_instances(job);
+  const uint64_t room = moving_ ? rt::most_bytes(1, instances.size(), job.gpu.bvh) : 0;
+  top_ = place(kTopName, encode_top(job, instances), room);
+  structures.bytes += top_.bytes;
+  structures.top_depth = top_.depth;
+  structures.bottom_levels = bottoms_.size();
   structures.instances = instances.size();
-  place_records(world, top.stack_need);
-  bind(kTopLevel, top.address, top.bytes);
+  bind_top();
+}
+
+void SceneWorld::bind_top() {
+  world.local_bytes = local_bytes_;
+  place_records(world, top_.stack_need);
+  bind(kTopLevel, top_.address, top_.bytes);
 }
 
 std::vector<float> SceneWorld::read_image(uint32_t handle) const {

@@ -73,29 +73,6 @@ void override_camera(Camera& camera, const CameraKey& key, const std::string& va
   camera.field_of_view = numbers[0];
 }
 
-void check_camera(const Camera& camera) {
-  const auto text = [](const Vec3& v) { return fmt::format("{},{},{}", v[0], v[1], v[2]); };
-  const Vec3 view = camera.target - camera.eye;
-  if (glm::dot(view, view) == 0)
-    throw UserError({}, fmt::format("the camera at {} looks at its own place", text(camera.eye)),
-                    "--eye and --look-at must name two places");
-  const Vec3 side = glm::cross(view, camera.up);
-  // Directions closer than 1/1000 give a picture whose rotation is chance.
-  if (!(glm::dot(side, side) > 1e-6f * glm::dot(view, view) * glm::dot(camera.up, camera.up)))
-    throw UserError({},
-                    fmt::format("the camera looks along {}, which is also its upward direction {}",
-                                text(view), text(camera.up)),
-                    "--up gives another upward direction");
-  const CameraMatrices matrices = camera_matrices(camera, 1);
-  for (const Mat4& m :
-       {matrices.model_view, matrices.projection, matrices.model_view_inverse, matrices.projection_inverse})
-    for (size_t c = 0; c < 4; ++c)
-      for (size_t r = 0; r < 4; ++r)
-        if (!std::isfinite(m[c][r]))
-          throw UserError({}, fmt::format("the camera at {} that looks at {} is out of range",
-                                          text(camera.eye), text(camera.target)));
-}
-
 void override_light(Camera& camera, const std::string& key, const std::string& value) {
   if (key == "light.sky") {
     if (value != "on" && value != "off")
@@ -222,6 +199,34 @@ Override material_override(const std::string& text) {
   throw UserError({}, fmt::format("--material is '{}', expected NAME.KEY=VALUE", text), material_form());
 }
 
+std::string why_blind(const Camera& camera, std::string* note) {
+  const auto text = [](const Vec3& v) { return fmt::format("{},{},{}", v[0], v[1], v[2]); };
+  const auto told = [&](std::string why, const char* what_to_do) {
+    if (note) *note = what_to_do;
+    return why;
+  };
+  const Vec3 view = camera.target - camera.eye;
+  if (glm::dot(view, view) == 0)
+    return told(fmt::format("the camera at {} looks at its own place", text(camera.eye)),
+                "--eye and --look-at must name two places");
+  const Vec3 side = glm::cross(view, camera.up);
+  // Directions closer than 1/1000 give a picture whose rotation is chance.
+  if (!(glm::dot(side, side) > 1e-6f * glm::dot(view, view) * glm::dot(camera.up, camera.up)))
+    return told(fmt::format("the camera looks along {}, which is also its upward direction {}", text(view),
+                            text(camera.up)),
+                "--up gives another upward direction");
+  const CameraMatrices matrices = camera_matrices(camera, 1);
+  for (const Mat4& m :
+       {matrices.model_view, matrices.projection, matrices.model_view_inverse, matrices.projection_inverse})
+    for (size_t c = 0; c < 4; ++c)
+      for (size_t r = 0; r < 4; ++r)
+        if (!std::isfinite(m[c][r]))
+          return told(fmt::format("the camera at {} that looks at {} is out of range", text(camera.eye),
+                                  text(camera.target)),
+                      "");
+  return "";
+}
+
 void override_scene(Scene& scene, const std::vector<Override>& overrides) {
   bool is_moved = false, is_lit = false;
   for (const auto& [key, value] : overrides) {
@@ -241,7 +246,9 @@ void override_scene(Scene& scene, const std::vector<Override>& overrides) {
     override_camera(scene.camera, *found, value);
     is_moved = true;
   }
-  if (is_moved) check_camera(scene.camera);
+  std::string note;
+  if (const std::string why = is_moved ? why_blind(scene.camera, &note) : ""; !why.empty())
+    throw UserError({}, why, note);
   if (is_lit && scene.camera.has_sky)
     throw UserError({}, fmt::format("{} has a sky, and its light is used only without one", scene.name),
                     "--light sky=off takes the sky away");

@@ -31,6 +31,10 @@ Override material_override(const std::string& text);
 // results.
 void override_scene(Scene& scene, const std::vector<Override>& overrides);
 
+// Returns why no ray can leave a camera, or "": it looks at its own place or along its upward direction, or
+// is out of range. `note` gets which option mends it.
+std::string why_blind(const Camera& camera, std::string* note = nullptr);
+
 std::string_view name_of(MaterialModel model);  // "lambertian", "metallic", ...
 
 }  // namespace glint::scenes

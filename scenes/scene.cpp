@@ -13,6 +13,7 @@
 #include "scenes/import/scene_file.h"
 #include "scenes/instancing.h"
 #include "scenes/lumibench/builders.h"
+#include "scenes/motions/built_in.h"
 
 namespace glint::scenes {
 namespace {
@@ -22,14 +23,17 @@ struct Entry {
   const char* doc;
   uint64_t triangles;  // triangles of the original, as the paper counts them
   Scene (*build)(const LoadOptions&);
+  std::shared_ptr<const Motion> (*move)(const Scene&) = nullptr;  // null: nothing moves
 };
 
 // Lists the scenes in the paper's order, by triangles.
 constexpr Entry kScenes[] = {
-    {"WKND", "487 procedural spheres under a sky; the scene is complete.", 0, build_weekend},
+    {"WKND", "487 procedural spheres under a sky; the scene is complete.", 0, build_weekend,
+     whirl_of_spheres},
     {"SHIP", "A schooner with thin masts and rigging, in one structure.", 6'255, build_ship},
-    {"BUNNY", "A bunny in a Cornell box.", 144'058, build_bunny},
-    {"SPNZA", "A colonnaded hall with 24 large textures, in one structure.", 262'267, build_sponza},
+    {"BUNNY", "A bunny in a Cornell box.", 144'058, build_bunny, swaying_model},
+    {"SPNZA", "A colonnaded hall with 24 large textures, in one structure.", 262'267, build_sponza,
+     walk_through_sponza},
     {"CHSNT", "A chestnut tree whose leaves are cut out by their texture's alpha in any-hit shaders.",
      313'000, build_chestnut},
     {"BATH", "A bathroom with a mirror and lamps.", 423'821, build_bathroom},
@@ -104,12 +108,14 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-Scene build_scene(const std::string& name, const LoadOptions& options) {
+// Returns the scene of a name. Sets `entry` to its row.
+Scene build_scene(const std::string& name, const LoadOptions& options, const Entry*& found) {
   const std::string wanted = upper_case(name);
   std::vector<std::string> names;
   for (const Entry& entry : kScenes) {
     names.push_back(entry.name);
     if (wanted != entry.name) continue;
+    found = &entry;
     Scene scene = entry.build(options);
     scene.original_triangles = entry.triangles;
     if (entry.triangles > 0)
@@ -190,7 +196,7 @@ uint64_t Scene::hash() const {
 
 std::vector<SceneInfo> scene_list() {
   std::vector<SceneInfo> list;
-  for (const Entry& entry : kScenes) list.push_back({entry.name, entry.doc});
+  for (const Entry& entry : kScenes) list.push_back({entry.name, entry.doc, entry.move != nullptr});
   return list;
 }
 
@@ -216,9 +222,11 @@ void name_materials(Scene& scene) {
 }  // namespace
 
 Scene load_scene(const std::string& name, const LoadOptions& options) {
-  Scene scene = names_scene_file(name) ? load_scene_file(name, options) : build_scene(name, options);
+  const Entry* entry = nullptr;
+  Scene scene = names_scene_file(name) ? load_scene_file(name, options) : build_scene(name, options, entry);
   name_materials(scene);
   if (options.instancing) share_copies(scene);
+  if (options.moving && entry && entry->move) scene.motion = entry->move(scene);
   return scene;
 }
 

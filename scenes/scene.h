@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,8 @@ struct Camera {
   float light_radius = 0;
 };
 
+class Motion;  // scenes/motion.h
+
 struct Scene {
   std::string name;
   // This says what the geometry really is: "original", "partial" (files of the original are absent),
@@ -97,7 +100,8 @@ struct Scene {
   std::vector<std::string> material_names;  // of each material; empty where nothing names it
   std::vector<Texture> textures;
   Camera camera;
-  bool alpha_test = false;          // Triangle hit groups have the any-hit alpha shader.
+  bool alpha_test = false;               // Triangle hit groups have the any-hit alpha shader.
+  std::shared_ptr<const Motion> motion;  // what moves by itself; null: nothing
   uint64_t original_triangles = 0;  // triangles of the application's complete scene; 0: it has no such scene
   uint64_t triangles() const;       // triangles in the world, with those of each instance
   uint64_t stored_triangles() const;  // triangles of the models, each counted once
@@ -119,10 +123,15 @@ struct LoadOptions {
   // It is called while a scene is loaded or generated, and may be empty.
   std::function<void(double fraction)> progress = {};
   uint32_t threads = 1;  // threads of the host that read large meshes; they do not show in the scene
+  // Scene::motion is wanted. Skins and morph targets of a glTF file are then read, too, and a file is in its
+  // pose at time 0.
+  bool moving = false;
+  std::string animation;  // name or number of the glTF animation to play; empty: the first one
 };
 
 struct SceneInfo {
   std::string name, doc;
+  bool moves = false;  // It has a motion.
 };
 std::vector<SceneInfo> scene_list();
 

@@ -78,6 +78,38 @@ void read_list(Reading& r, const std::vector<const Value*>& all, const LaunchDes
       r.errors.error(launch.where, fmt::format("there are two launches '{}'", launch.name));
 }
 
+// Returns the constants of a launch in a frame, whose number stands where they say "frame".
+DataSource in_frame(DataSource constants, int64_t frame) {
+  for (Entry& entry : constants.data.table)
+    if (entry.value.kind == Value::Kind::Text && entry.value.text == "frame") {
+      entry.value.kind = Value::Kind::Integer;
+      entry.value.whole = frame, entry.value.real = double(frame);
+    }
+  return constants;
+}
+
+// Repeats the list of launches for each frame.
+void read_frames(Reading& r, const Value& value, bool is_list) {
+  constexpr int64_t kMostFrames = 10'000;
+  TableReader t(value, "[frames]", r.errors);
+  const int64_t count = t.integer("count", 1, 1, kMostFrames);
+  if (!t.take("count")) r.errors.error(value.where, "[frames] needs 'count', the number of frames");
+  t.finish();
+  if (!is_list) {
+    r.errors.error(value.where, "[frames] repeats a list of launches, and there is none",
+                   "write [[launch]] with a name instead of [launch]");
+    return;
+  }
+  std::vector<LaunchDescription> all;
+  for (int64_t frame = 0; frame < count; ++frame)
+    for (const LaunchDescription& one : r.out.launches) {
+      LaunchDescription& made = all.emplace_back(one);
+      made.name = fmt::format("frame{}-{}", frame, one.name);
+      made.push_constants = in_frame(one.push_constants, frame);
+    }
+  r.out.launches = std::move(all);
+}
+
 void read_single(Reading& r, const Value* value, LaunchDescription launch) {
   if (launch.raygen.has_value() == !launch.compute.empty())
     r.errors.error({r.out.path, 0, 0}, launch.raygen ? "a pipeline has [raygen] or [compute], not both"
@@ -120,6 +152,8 @@ void read_launches(Reading& r, TableReader& root) {
     read_list(r, root.tables("launch"), common);
   else
     read_single(r, launch, common);
+  if (const Value* frames = root.take("frames"))
+    read_frames(r, *frames, launch && launch->kind == Value::Kind::List);
   const auto& has_records = [&](const RegionDescription& region) { return !region.records.empty(); };
   const auto is_compute = [](const LaunchDescription& one) { return !one.compute.empty(); };
   if (std::all_of(r.out.launches.begin(), r.out.launches.end(), is_compute) &&

@@ -88,13 +88,39 @@ std::vector<std::string> saved_before(const std::string& path) {
   return listed_names(path, "saved", [](const nlohmann::json& item) { return item; });
 }
 
-constexpr const char* kLaunchPrefix = "launch-";
+constexpr const char *kLaunchPrefix = "launch-", *kFramePrefix = "frame-";
+
+// Returns the folders that the run.json of a directory lists under a key and whose names begin so.
+std::vector<std::string> folders_before(const std::string& directory, const char* key, const char* prefix) {
+  std::vector<std::string> out =
+      listed_names(directory + "/run.json", key, [](const nlohmann::json& item) { return item; });
+  std::erase_if(out, [&](const std::string& name) { return !name.starts_with(prefix); });
+  return out;
+}
 
 // Returns the names of the maps in a maps.json.
 std::vector<std::string> maps_before(const std::string& path) {
   return listed_names(path, "maps", [](const nlohmann::json& item) {
     return item.is_object() && item.contains("name") ? item["name"] : nlohmann::json();
   });
+}
+
+nlohmann::ordered_json json_of(const SequenceInfo& sequence) {
+  nlohmann::ordered_json out = {{"first", sequence.first},
+                                {"last", sequence.last},
+                                {"fps", sequence.fps},
+                                {"structures", sequence.structures},
+                                {"caches", sequence.caches}};
+  if (!sequence.camera_path.empty()) out["camera_path"] = sequence.camera_path;
+  if (!sequence.animation.empty()) out["animation"] = sequence.animation;
+  return out;
+}
+
+// Adds what a run of frames, and a frame of it, say.
+void add_frames(const RunInfo& info, nlohmann::ordered_json& json) {
+  if (const auto& s = info.sequence) json["sequence"] = json_of(*s);
+  if (const auto& m = info.moment) json["moment"] = {{"frame", m->frame}, {"seconds", m->seconds}};
+  if (!info.frames.empty()) json["frames"] = info.frames;
 }
 
 nlohmann::ordered_json json_of(const PartInfo& part) {
@@ -132,10 +158,15 @@ std::string launch_folder(size_t number, const std::string& name) {
 }
 
 std::vector<std::string> launches_of(const std::string& directory) {
-  std::vector<std::string> out =
-      listed_names(directory + "/run.json", "launches", [](const nlohmann::json& item) { return item; });
-  std::erase_if(out, [](const std::string& name) { return !name.starts_with(kLaunchPrefix); });
-  return out;
+  return folders_before(directory, "launches", kLaunchPrefix);
+}
+
+std::string frame_folder(uint64_t frame) {
+  return fmt::format("{}{:04}", kFramePrefix, frame);
+}
+
+std::vector<std::string> frames_of(const std::string& directory) {
+  return folders_before(directory, "frames", kFramePrefix);
 }
 
 RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
@@ -172,16 +203,17 @@ void RunDirectory::begin(RunInfo info) {
   // A killed run leaves this list, from which the next run knows what to remove.
   for (const std::string& name : saved_before(path_of("run.json")))
     if (std::ranges::find(info.saved, name) == info.saved.end()) info.saved.push_back(name);
-  const std::vector<std::string> launches = launches_of(path_);
+  const std::vector<std::string> launches = launches_of(path_), frames = frames_of(path_);
   mark(info);
   remove_results();
-  for (const std::string& name : launches) remove_launch(name);
+  for (const auto* folders : {&launches, &frames})
+    for (const std::string& name : *folders) remove_launch(name);
   remove_temporaries(path_, [&](const std::string& name) {
     return name == "run.json" || name == "config.toml" || std::ranges::find(earlier, name) != earlier.end();
   });
 }
 
-// Removes the directory of a launch, unless it holds files of others.
+// Removes the directory of a launch or of a frame, unless it holds files of others.
 void RunDirectory::remove_launch(const std::string& name) const {
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(path_of(name), error))) return;
@@ -301,6 +333,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
     if (!found.stored_at.empty()) json["not_finite"][file]["stored_at"] = found.stored_at;
   }
   if (!info.launches.empty()) json["launches"] = info.launches;
+  add_frames(info, json);
   if (!info.saved.empty()) json["saved"] = info.saved;
   for (const OutputInfo& output : info.outputs)
     json["outputs"][output.file] = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};

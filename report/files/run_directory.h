@@ -49,6 +49,21 @@ struct OutputInfo {
   bool is_image = false;
 };
 
+// Says which frames of a scene that moves were rendered, and how.
+struct SequenceInfo {
+  uint64_t first = 0, last = 0;
+  double fps = 24;
+  std::string structures, caches;      // as the options --structures and --caches name them
+  std::string camera_path, animation;  // empty: none, and the file's first one
+  double seconds_of(uint64_t frame) const { return double(frame) / fps; }
+};
+
+// Says which frame of a sequence a run is.
+struct MomentInfo {
+  uint64_t frame = 0;
+  double seconds = 0;  // from the beginning of the motion
+};
+
 inline constexpr int kRunSchema = 1;  // schema of run.json
 
 // Holds what run.json says besides schema and paths. Only this file of a run holds wall-clock times.
@@ -75,10 +90,13 @@ struct RunInfo {
   std::string on_fault = "stop";
   std::vector<FaultInfo> faults;
   std::vector<std::pair<std::string, NotFinite>> not_finite;  // pictures with pixels that are not finite
-  std::vector<std::string> saved;     // files that a pipeline or a kernel was asked to keep
-  std::vector<OutputInfo> outputs;    // what these files hold
-  std::vector<std::string> launches;  // folders of a list of launches, in order; each is a run directory
-  bool compact = false;               // The statistics are totals over units (stat_totals()).
+  std::vector<std::string> saved;        // files that a pipeline or a kernel was asked to keep
+  std::vector<OutputInfo> outputs;       // what these files hold
+  std::vector<std::string> launches;     // folders of a list of launches, in order; each is a run directory
+  std::vector<std::string> frames;       // folders of frames, in order; each is a run directory
+  std::optional<SequenceInfo> sequence;  // of a run of frames, and of each of them
+  std::optional<MomentInfo> moment;      // of a frame
+  bool compact = false;                  // The statistics are totals over units (stat_totals()).
   std::optional<PartInfo> part;
   int exit = 0;
   std::string message;  // why exit is not 0
@@ -88,6 +106,10 @@ struct RunInfo {
 std::string launch_folder(size_t number, const std::string& name);
 // Returns the folders of the launches that a run's run.json lists, in order; none when it is of one launch.
 std::vector<std::string> launches_of(const std::string& directory);
+
+// Do the same for frames: "frame-0007".
+std::string frame_folder(uint64_t frame);
+std::vector<std::string> frames_of(const std::string& directory);
 
 // Writes a file under another name and renames it, so that a reader never sees half a file. When the file
 // cannot be written, nothing stays behind, and UserError is thrown. Anything but a regular file (a pipe, a

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "report/page/frame_bars.h"
 #include "report/page/parts.h"
 
 namespace glint::report {
@@ -58,6 +60,14 @@ std::string points_table(const Json& data, const Json& one) {
       head, rows);
 }
 
+// Returns the figure over the axis of frames, or "" for what is no sequence of frames.
+std::string figure_of(const Json& data, const Json& one) {
+  if (one["kind"] != "frames") return "";
+  std::vector<const Json*> runs;
+  for (const Json& point : one["points"]) runs.push_back(run_of(data, point));
+  return frame_bars(one["points"], runs, data["metric_docs"]);
+}
+
 std::string failed_table(const Json& one) {
   std::string rows;
   for (const Json& failed : one["failed"])
@@ -84,6 +94,10 @@ Kind kind_of(const Json& one) {
         "launches", "Launches",
         "{} of {} launches of <code>{}</code> are complete, in the order in which they ran. The run's own "
         "numbers are their sum. Each name leads to the launch's own report."};
+  if (one["kind"] == "frames")
+    return {"frames", "Frames",
+            "{} of {} frames of <code>{}</code> are complete, in the order in which they ran. The run's own "
+            "numbers are their sum. Each name leads to the frame's own report."};
   return {"failed", "Workloads that failed", ""};
 }
 
@@ -97,7 +111,7 @@ std::string section(const Json& data, const Json& one, size_t number) {
   if (has_table)
     out += "<p class=\"lead\">" +
            fmt::format(fmt::runtime(kind.lead), points, points + failed, escaped_text(one, "source")) +
-           "</p>\n" + points_table(data, one);
+           "</p>\n" + figure_of(data, one) + points_table(data, one);
   else
     out += fmt::format(
         "<p class=\"lead\"><code>{}</code> has {} not in its metrics.csv, and so not on this page.</p>\n",

@@ -14,6 +14,7 @@
 #include "rtunit/structure/encode.h"
 #include "rtunit/structure/leaves.h"
 #include "rtunit/structure/micromap_table.h"
+#include "rtunit/structure/refit.h"
 #include "rtunit/structure/treelet_table.h"
 #include "rtunit/traversal/ray_stack.h"
 
@@ -67,7 +68,7 @@ void check_size_with_treelets(const std::string& name, uint64_t bytes) {
 }  // namespace
 
 EncodedStructure encode(const std::string& name, uint8_t level, Leaves leaves, const BuildOptions& options,
-                        uint32_t threads) {
+                        uint32_t threads, KeptTree* kept) {
   check_size(name, leaves.bytes.size());
   const std::unique_ptr<NodeFormat> format = options.format.make({});
   BuildTree tree;
@@ -119,6 +120,8 @@ EncodedStructure encode(const std::string& name, uint8_t level, Leaves leaves, c
   header.stack_need = info.stack_need;
   header.bytes = info.bytes;
   std::memcpy(bytes.data(), &header, sizeof header);
+  if (kept)
+    *kept = {std::move(tree), std::move(placement), options.format, info, std::move(leaves.stack_need)};
   return {info, std::move(bytes)};
 }
 
@@ -139,10 +142,10 @@ uint64_t most_bytes(uint8_t level, uint64_t primitives, const BuildOptions& opti
 }
 
 EncodedStructure encode_bottom(const std::string& name, const BottomLevel& input, const BuildOptions& options,
-                               uint32_t threads) {
+                               uint32_t threads, KeptTree* kept) {
   Leaves leaves = leaves_of(input, options.pair_triangles, threads);
   leaves.micromaps = take_micromaps(input, leaves);
-  return encode(name, 0, std::move(leaves), options, threads);
+  return encode(name, 0, std::move(leaves), options, threads, kept);
 }
 
 StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedStructure structure) {

@@ -80,10 +80,14 @@ struct EncodedStructure {
   StructureInfo info;
   mem::HostBlock bytes;
 };
+struct KeptTree;  // rtunit/structure/refit.h
+
 // Encodes a bottom level on up to `threads` threads, which do not show in the bytes. A tree that is too deep
-// for the ray stack is built anew, balanced. Throws UserError when an index is out of range.
+// for the ray stack is built anew, balanced. `kept` gets what it takes to fit the structure to geometry that
+// moves. Throws UserError when an index is out of range.
 EncodedStructure encode_bottom(const std::string& name, const BottomLevel& input,
-                               const BuildOptions& options = {}, uint32_t threads = 1);
+                               const BuildOptions& options = {}, uint32_t threads = 1,
+                               KeptTree* kept = nullptr);
 StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedStructure structure);
 // Returns a size that no structure of so many triangles or boxes (level 0) or instances (level 1) exceeds.
 // Micromaps come on top of it.
@@ -100,10 +104,10 @@ std::string why_unreachable(const Instance& instance, const StructureInfo& botto
 // Encodes a top level. Instances of empty bottom levels are inactive and keep their index. With `notes`,
 // instances that no ray can be taken into are inactive, too, and are noted there. Throws UserError when there
 // are such instances and no notes, an index is out of range, a bottom level has another node format or the
-// trees are too deep for the ray stack.
+// trees are too deep for the ray stack. `kept` is that of encode_bottom().
 EncodedStructure encode_top(const std::string& name, std::span<const Instance> instances,
                             std::span<const StructureInfo> bottoms, const BuildOptions& options = {},
-                            std::vector<std::string>* notes = nullptr);
+                            std::vector<std::string>* notes = nullptr, KeptTree* kept = nullptr);
 // Encodes a top level and places it in memory. It has no notes.
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,
                         std::span<const Instance> instances, std::span<const StructureInfo> bottoms,

@@ -3,64 +3,15 @@
 #include "rtunit/structure/leaves.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
-#include <fmt/format.h>
 #include <optional>
 
 #include "base/check.h"
-#include "base/diagnostics.h"
 #include "base/parallel_ranges.h"
+#include "rtunit/structure/input_primitives.h"
 
 namespace glint::rt {
 namespace {
-
-using Vec3 = std::array<float, 3>;
-using Triangle = std::array<Vec3, 3>;
-
-Bounds bounds_of(const Triangle& triangle) {
-  Bounds out{triangle[0], triangle[0]};
-  for (const Vec3& p : triangle) extend(out, {p, p});
-  return out;
-}
-
-bool has_area(const Triangle& t) {
-  double a[3], b[3];
-  for (size_t i = 0; i < 3; ++i) {
-    a[i] = double(t[1][i]) - t[0][i];
-    b[i] = double(t[2][i]) - t[0][i];
-  }
-  return a[1] * b[2] != a[2] * b[1] || a[2] * b[0] != a[0] * b[2] || a[0] * b[1] != a[1] * b[0];
-}
-
-Vec3 transformed(const std::array<float, 12>& m, const Vec3& p) {
-  Vec3 out;
-  for (size_t r = 0; r < 3; ++r)
-    out[r] = ((m[4 * r] * p[0] + m[4 * r + 1] * p[1]) + m[4 * r + 2] * p[2]) + m[4 * r + 3];
-  return out;
-}
-
-uint64_t num_triangles(const Geometry& g) {
-  return (g.indices.empty() ? (g.positions.size() + g.stride - 12) / g.stride : g.indices.size()) / 3;
-}
-
-// Returns the corners of a triangle, or nothing when the triangle is inactive.
-std::optional<Triangle> triangle_at(const Geometry& g, uint64_t index) {
-  Triangle out;
-  for (size_t corner = 0; corner < 3; ++corner) {
-    const uint64_t vertex = g.indices.empty() ? 3 * index + corner : g.indices[3 * index + corner];
-    if (vertex * g.stride + 12 > g.positions.size())
-      throw UserError(fmt::format("triangle {} names vertex {}, and there are only {} bytes of vertices",
-                                  index, vertex, g.positions.size()));
-    std::memcpy(&out[corner], &g.positions[vertex * g.stride], 12);
-    if (g.transform != kIdentity) out[corner] = transformed(g.transform, out[corner]);
-    for (float x : out[corner])
-      if (!std::isfinite(x)) return {};
-  }
-  if (!has_area(out)) return {};
-  return out;
-}
 
 // Adds `second` to a leaf that holds `first` when they share two corners and the common box is no larger than
 // both.
@@ -82,13 +33,6 @@ bool try_pair(const Triangle& first, const Triangle& second, TriangleLeaf& leaf)
   leaf.second = pick;
   leaf.count = 2;
   return true;
-}
-
-// In Vulkan a box is inactive when its first coordinate is not a number. Choice: it is also inactive when any
-// coordinate is infinite or the box is inside out.
-bool is_active(const Bounds& box) {
-  return is_finite(box) && box.low[0] <= box.high[0] && box.low[1] <= box.high[1] &&
-         box.low[2] <= box.high[2];
 }
 
 // Finds and writes the leaves of one geometry. A triangle shares a leaf with the next one where it may and
@@ -208,11 +152,6 @@ class GeometryLeaves {
 };
 
 }  // namespace
-
-bool is_finite(const Bounds& bounds) {
-  return std::all_of(bounds.low.begin(), bounds.low.end(), [](float x) { return std::isfinite(x); }) &&
-         std::all_of(bounds.high.begin(), bounds.high.end(), [](float x) { return std::isfinite(x); });
-}
 
 Leaves leaves_of(const BottomLevel& input, bool pair_triangles, uint32_t threads) {
   std::vector<GeometryLeaves> geometries;

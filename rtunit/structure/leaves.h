@@ -24,6 +24,4 @@ struct Leaves {
 // range.
 Leaves leaves_of(const BottomLevel& input, bool pair_triangles, uint32_t threads);
 
-bool is_finite(const Bounds& bounds);
-
 }  // namespace glint::rt

@@ -9,6 +9,8 @@
 #include "base/diagnostics.h"
 #include "rtunit/structure/build.h"
 #include "rtunit/structure/encode.h"
+#include "rtunit/structure/input_primitives.h"
+#include "rtunit/structure/top_leaves.h"
 
 namespace glint::rt {
 namespace {
@@ -66,10 +68,8 @@ std::string why_unreachable(const Instance& instance, const StructureInfo& botto
                                                                     : "its transform moves it to infinity";
 }
 
-EncodedStructure encode_top(const std::string& name, std::span<const Instance> instances,
-                            std::span<const StructureInfo> bottoms, const BuildOptions& options,
-                            std::vector<std::string>* notes) {
-  const FormatId format = options.format.make({})->walk().format;
+Leaves top_leaves(const std::string& name, std::span<const Instance> instances,
+                  std::span<const StructureInfo> bottoms, FormatId format, std::vector<std::string>* notes) {
   std::vector<BuildItem> items;
   std::vector<InstanceLeaf> instance_leaves;
   Leaves leaves;
@@ -108,7 +108,14 @@ EncodedStructure encode_top(const std::string& name, std::span<const Instance> i
   leaves.bytes = mem::HostBlock(items.size() * sizeof(InstanceLeaf));
   std::copy(instance_leaves.begin(), instance_leaves.end(),
             reinterpret_cast<InstanceLeaf*>(leaves.bytes.data()));
-  return encode(name, 1, std::move(leaves), options, 1);
+  return leaves;
+}
+
+EncodedStructure encode_top(const std::string& name, std::span<const Instance> instances,
+                            std::span<const StructureInfo> bottoms, const BuildOptions& options,
+                            std::vector<std::string>* notes, KeptTree* kept) {
+  const FormatId format = options.format.make({})->walk().format;
+  return encode(name, 1, top_leaves(name, instances, bottoms, format, notes), options, 1, kept);
 }
 
 StructureInfo build_top(mem::AddressSpace& memory, const std::string& name,

@@ -3,13 +3,13 @@
 #include "scenes/import/gltf_mesh.h"
 
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 #include <utility>
 
 #include "base/diagnostics.h"
 #include "base/parallel_ranges.h"
+#include "scenes/import/gltf_accessor.h"
 #include "scenes/import/gltf_names.h"
 #include "scenes/mesh.h"
 
@@ -19,7 +19,9 @@ namespace {
 class MeshReader {
  public:
   MeshReader(const tinygltf::Model& file, int mesh, const MeshOptions& options)
-      : file_(file), name_(name_of(file.meshes[size_t(mesh)].name, mesh)), options_(options) {}
+      : file_(file),
+        options_(options),
+        place_{file, options.path, "mesh " + name_of(file.meshes[size_t(mesh)].name, mesh)} {}
 
   void add(const tinygltf::Primitive& p) {
     if (p.mode != TINYGLTF_MODE_TRIANGLES) fail("only lists of triangles are read");
@@ -29,7 +31,7 @@ class MeshReader {
                                  ? options_.materials.back()
                                  : named(options_.materials, p.material, "material", options_.path);
     Model piece;
-    const Elements corners = elements(*positions, sizeof(Vec3));
+    const GltfElements corners = elements(*positions, sizeof(Vec3));
     piece.vertices.resize(corners.count);
     read<Vec3>(corners, piece, [&](Vertex& v, const Vec3& at) {
       if (!std::isfinite(at[0]) || !std::isfinite(at[1]) || !std::isfinite(at[2]))
@@ -43,46 +45,23 @@ class MeshReader {
       read<Vec2>(elements(*coordinates, sizeof(Vec2)), piece,
                  [](Vertex& v, const Vec2& at) { v.texture_coordinate = at; });
     piece.indices = indices(p, piece.vertices.size());
+    origins.push_back({uint32_t(model.vertices.size()), uint32_t(piece.vertices.size()), {}});
+    if (!normals) origins.back().corners = piece.indices;
     append(normals ? std::move(piece) : with_flat_normals(piece));
   }
   Model model;
+  std::vector<PrimitiveOrigin> origins;
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw UserError({options_.path}, fmt::format("in mesh {}: {}", name_, what));
+  [[noreturn]] void fail(const std::string& what) const { place_.fail(what); }
+  GltfElements elements(const tinygltf::Accessor& accessor, size_t bytes) const {
+    return elements_of(place_, accessor, bytes);
   }
 
   static constexpr size_t kRange = 65536;  // elements that a thread reads at a time
 
-  // Holds where an accessor's elements lie.
-  struct Elements {
-    const unsigned char* first;
-    size_t stride, count;
-    template <class Value>
-    Value at(size_t i, size_t bytes = sizeof(Value)) const {
-      Value value{};
-      std::memcpy(&value, first + i * stride, bytes);
-      return value;
-    }
-  };
-
-  // Finds elements of `bytes` bytes.
-  Elements elements(const tinygltf::Accessor& accessor, size_t bytes) const {
-    if (accessor.bufferView < 0 || accessor.sparse.isSparse) fail("sparse accessors are not read");
-    const tinygltf::BufferView& view =
-        named(file_.bufferViews, accessor.bufferView, "buffer view", options_.path);
-    const std::vector<unsigned char>& data = named(file_.buffers, view.buffer, "buffer", options_.path).data;
-    const int stride = accessor.ByteStride(view);
-    if (stride < 1) fail("an accessor has a stride that does not fit its type");
-    const size_t first = view.byteOffset + accessor.byteOffset;
-    const bool fits = first <= data.size() && bytes <= data.size() - first &&
-                      accessor.count - 1 <= (data.size() - first - bytes) / size_t(stride);
-    if (accessor.count > 0 && !fits) fail("an accessor leaves its buffer");
-    return {data.data() + first, size_t(stride), accessor.count};
-  }
-
   template <class Value, class Put>
-  void read(const Elements& from, Model& piece, const Put& put) const {
+  void read(const GltfElements& from, Model& piece, const Put& put) const {
     if (from.count != piece.vertices.size()) fail("the attributes of a primitive have different counts");
     parallel_ranges(from.count, kRange, options_.threads, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) put(piece.vertices[i], from.at<Value>(i));
@@ -107,7 +86,7 @@ class MeshReader {
     const tinygltf::Accessor& accessor = named(file_.accessors, p.indices, "accessor", options_.path);
     const int bytes = tinygltf::GetComponentSizeInBytes(uint32_t(accessor.componentType));
     if (bytes != 1 && bytes != 2 && bytes != 4) fail("indices have 1, 2 or 4 bytes");
-    const Elements from = elements(accessor, size_t(bytes));
+    const GltfElements from = elements(accessor, size_t(bytes));
     out.resize(from.count);
     parallel_ranges(from.count, kRange, options_.threads, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
@@ -141,17 +120,19 @@ class MeshReader {
   }
 
   const tinygltf::Model& file_;
-  const std::string name_;  // of the mesh, for messages
   const MeshOptions& options_;
+  const GltfPlace place_;
 };
 
 }  // namespace
 
-Model read_mesh(const tinygltf::Model& file, int mesh, const MeshOptions& options) {
+Model read_mesh(const tinygltf::Model& file, int mesh, const MeshOptions& options,
+                std::vector<PrimitiveOrigin>* origins) {
   const tinygltf::Mesh& source = named(file.meshes, mesh, "mesh", options.path);
   MeshReader reader(file, mesh, options);
   for (const tinygltf::Primitive& primitive : source.primitives) reader.add(primitive);
   reader.model.name = source.name;
+  if (origins) *origins = std::move(reader.origins);
   return std::move(reader.model);
 }
 

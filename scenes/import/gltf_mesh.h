@@ -21,10 +21,20 @@ struct MeshOptions {
   uint32_t threads = 1;     // threads of the host, which do not show in the model
 };
 
+// Says which vertices of a model came from a primitive of its mesh.
+struct PrimitiveOrigin {
+  uint32_t first_vertex = 0;  // of the model
+  uint32_t vertices = 0;      // of the primitive
+  // The primitive's vertex of each of the model's, where the primitive has no normals: then each triangle has
+  // corners of its own. Empty: they are those of the primitive, in order.
+  std::vector<uint32_t> corners;
+};
+
 // Returns all primitives of the file's mesh `mesh` as one model, in the mesh's own space. Normals are flat
 // where the file has none (glTF 2.0, 3.7.2.1). Throws UserError at the file for numbers that name nothing,
 // primitives other than triangles, attributes that are not floats, positions that are not finite, and
-// accessors that leave their buffers.
-Model read_mesh(const tinygltf::Model& file, int mesh, const MeshOptions& options);
+// accessors that leave their buffers. `origins` gets an element for each primitive.
+Model read_mesh(const tinygltf::Model& file, int mesh, const MeshOptions& options,
+                std::vector<PrimitiveOrigin>* origins = nullptr);
 
 }  // namespace glint::scenes

@@ -26,8 +26,10 @@
 #include "base/host_threads.h"
 #include "base/regular_file.h"
 #include "pictures/decode.h"
+#include "scenes/import/gltf_animation.h"
 #include "scenes/import/gltf_materials.h"
 #include "scenes/import/gltf_mesh.h"
+#include "scenes/import/gltf_motion.h"
 #include "scenes/import/gltf_names.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/lumibench/builders.h"
@@ -46,28 +48,9 @@ constexpr std::array<std::string_view, 7> kKnownExtensions{
     "KHR_materials_unlit", "KHR_materials_specular",
     "KHR_materials_volume"};
 
-// Returns a node's matrix (glTF 2.0, 3.5.3): its matrix, or translation * rotation (a quaternion x y z w) *
-// scale.
-Matrix local_matrix(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
-  Matrix out(1);
-  if (node.rotation.size() == 4)
-    out = glm::mat4_cast(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
-  for (size_t c = 0; c < 3 && node.scale.size() == 3; ++c) out[c] *= node.scale[c];
-  if (node.translation.size() == 3) out[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1);
-  return out;
-}
-
-Affine affine(const Matrix& m) {
-  return glm::transpose(glm::mat4x3(glm::mat4(m)));
-}
-Vec3 column(const Matrix& m, size_t c) {
-  return Vec3(m[c]);
-}
-
 // Says whether rays can be taken into the space of an instance. The builder of structures inverts in floats.
 bool can_be_inverted(const Matrix& m) {
-  const Affine to_world = affine(m);
+  const Affine to_world = affine_of(m);
   const glm::mat3 to_mesh = glm::inverse(glm::mat3(glm::mat4(m)));
   const auto is_finite = [](const auto& column) {
     return !glm::any(glm::isnan(column) || glm::isinf(column));
@@ -97,7 +80,7 @@ class Nodes {
       if (has_parent_[size_t(index)])
         fail(node, index, "it has two parents or stands below itself, and nodes form trees");
       has_parent_[size_t(index)] = true;
-      const Matrix matrix = above * local_matrix(node);
+      const Matrix matrix = above * pose_of(node).local();
       add_content(node, index, matrix);
       // The last child is put first, so that nodes come in the order of the file.
       for (size_t i = node.children.size(); i-- > 0;) open.emplace_back(node.children[i], matrix);
@@ -109,42 +92,67 @@ class Nodes {
     std::erase_if(scene_.instances,
                   [&](const Instance& i) { return scene_.models[i.model].indices.empty(); });
     if (scene_.instances.empty()) throw UserError({path_}, "its scene has no triangles");
-    if (has_lamp_) {
-      const float radius = std::max(kLampSize * extent(), 1e-6f);
-      const int32_t material = add_material(scene_, "", diffuse_light(kLampColor, kLampColor, kLampColor));
-      scene_.instances.push_back({uint32_t(scene_.models.size()), kIdentity});
-      scene_.models.push_back(make_sphere("lamp", scene_.camera.light_position, radius, material));
-      scene_.camera.light_radius = radius;
-    }
+    add_lamp();
     const auto glows = [&](const Material& m) { return m.model == MaterialModel::DiffuseLight; };
     scene_.camera.has_sky = std::none_of(scene_.materials.begin(), scene_.materials.end(), glows);
   }
+
+  // Returns what moves, once the scene is finished.
+  GltfMoving take_moving() { return std::move(moving_); }
 
  private:
   // The lamp's radius is this share of the scene's extent. Choice: the lamp is large, because paths find it
   // only by chance.
   static constexpr float kLampSize = 0.05f;
   static constexpr float kLampColor = 15;  // like the lamps of LumiBench's scenes
+  static constexpr int kStands = -1;       // instead of the node of an instance
 
   [[noreturn]] void fail(const tinygltf::Node& node, int index, const std::string& what) const {
     throw UserError({path_}, fmt::format("node {}: {}", name_of(node.name, index), what));
   }
 
   void add_content(const tinygltf::Node& node, int index, const Matrix& matrix) {
-    if (node.mesh >= 0) {
+    if (node.mesh >= 0 && options_.moving) {
+      add_moving(node, index, matrix);
+    } else if (node.mesh >= 0) {
       if (!can_be_inverted(matrix))
         fail(node, index, "its transform flattens its mesh or is not finite, and a ray cannot follow it");
       const uint32_t model = model_of(node.mesh);
-      const Bounds box = moved(boxes_[model], affine(matrix));
+      const Bounds box = moved(boxes_[model], affine_of(matrix));
       const glm::vec3 size = box.upper - box.lower;
       if (glm::any(glm::isinf(size)) || glm::any(glm::isnan(size)))
         fail(node, index, "its transform moves its mesh to infinity, and no ray can meet it");
-      scene_.instances.push_back({model, affine(matrix)});
+      scene_.instances.push_back({model, affine_of(matrix)});
     }
-    if (node.camera >= 0 && !has_camera_) camera(named(file_.cameras, node.camera, "camera", path_), matrix);
+    if (node.camera >= 0 && !has_camera_) {
+      camera(named(file_.cameras, node.camera, "camera", path_), matrix);
+      if (has_camera_) moving_.camera_node = index;
+    }
     if (const auto light = node.extensions.find("KHR_lights_punctual");
         light != node.extensions.end() && light->second.Has("light"))
-      lamp(named(file_.lights, light->second.Get("light").GetNumberAsInt(), "light", path_), matrix);
+      lamp(named(file_.lights, light->second.Get("light").GetNumberAsInt(), "light", path_), index, matrix);
+  }
+
+  // Adds the mesh of a node that may move, wherever it is at first: a place that no ray can reach may be
+  // left.
+  void add_moving(const tinygltf::Node& node, int index, const Matrix& matrix) {
+    if (!is_deformed(file_, index)) {
+      add_instance(model_of(node.mesh), index, affine_of(matrix));
+      return;
+    }
+    std::vector<PrimitiveOrigin> origins;
+    const auto model = uint32_t(scene_.models.size());
+    scene_.models.push_back(
+        read_mesh(file_, node.mesh, {materials_, path_, host_threads(options_.threads)}, &origins));
+    boxes_.push_back(bounds(scene_.models.back()));
+    moving_.deformed.push_back({model, index, {file_, path_, index, origins, scene_.models.back()}});
+    add_instance(model, node.skin >= 0 ? kStands : index, node.skin >= 0 ? kIdentity : affine_of(matrix));
+  }
+
+  void add_instance(uint32_t model, int node, const Affine& to_world) {
+    if (scene_.models[model].indices.empty()) return;
+    scene_.instances.push_back({model, to_world});
+    moving_.instance_nodes.push_back(node);
   }
 
   uint32_t model_of(int mesh) {
@@ -161,18 +169,28 @@ class Nodes {
     if (source.type != "perspective") return;
     has_camera_ = true;
     Camera& out = scene_.camera;
-    out.eye = column(m, 3);
-    out.target = out.eye - normalized(column(m, 2));
-    out.up = normalized(column(m, 1));
+    stand_at(out, m);
     out.field_of_view = float(source.perspective.yfov * 180 / M_PI);
   }
 
   // Model: a point or spot light becomes a glowing ball that is the same in all directions. A directional
   // light is left to the sky.
-  void lamp(const tinygltf::Light& light, const Matrix& m) {
+  void lamp(const tinygltf::Light& light, int node, const Matrix& m) {
     if (has_lamp_ || light.type == "directional") return;
     has_lamp_ = true;
-    scene_.camera.light_position = column(m, 3);
+    moving_.lamp_node = node;
+    scene_.camera.light_position = Vec3(m[3]);
+  }
+
+  void add_lamp() {
+    if (!has_lamp_) return;
+    const float radius = std::max(kLampSize * extent(), 1e-6f);
+    const int32_t material = add_material(scene_, "", diffuse_light(kLampColor, kLampColor, kLampColor));
+    moving_.lamp_model = uint32_t(scene_.models.size());
+    moving_.instance_nodes.push_back(kStands);
+    scene_.instances.push_back({moving_.lamp_model, kIdentity});
+    scene_.models.push_back(make_sphere("lamp", scene_.camera.light_position, radius, material));
+    scene_.camera.light_radius = radius;
   }
 
   float extent() const {
@@ -188,6 +206,7 @@ class Nodes {
   std::vector<bool> has_parent_;  // of each node: whether it was added
   std::map<int, uint32_t> models_;
   std::vector<Bounds> boxes_;  // of models
+  GltfMoving moving_;
   bool has_camera_ = false, has_lamp_ = false;
 };
 
@@ -205,9 +224,10 @@ bool decode(tinygltf::Image* image, int index, std::string* error, std::string*,
   return true;
 }
 
-std::string note_of(const tinygltf::Model& file) {
+std::string note_of(const tinygltf::Model& file, bool moving) {
   std::string note = "The scene is from a glTF file.";
-  if (!file.skins.empty() || !file.animations.empty()) note += " Skins and animations are not read.";
+  if (!moving && (!file.skins.empty() || !file.animations.empty()))
+    note += " Skins and animations are not read.";
   const auto blends = [](const tinygltf::Material& m) { return m.alphaMode == "BLEND"; };
   if (std::any_of(file.materials.begin(), file.materials.end(), blends))
     note += " Blending is replaced by a mask of one half.";
@@ -260,10 +280,15 @@ Scene load_gltf(const std::string& path, const LoadOptions& options) {
   const tinygltf::Model file = read_file(path);
   Scene scene;
   Nodes nodes(scene, file, path, options);
-  for (const int node : named(file.scenes, std::max(0, file.defaultScene), "scene", path).nodes)
-    nodes.add(node);
+  const int number = std::max(0, file.defaultScene);
+  for (const int node : named(file.scenes, number, "scene", path).nodes) nodes.add(node);
   nodes.finish();
-  scene.note = note_of(file);
+  scene.note = note_of(file, options.moving);
+  if (options.moving) {
+    scene.motion = gltf_motion(file, path, number, options.animation, nodes.take_moving());
+    scene.motion->pose(scene, 0);
+    if (scene.motion->seconds() == 0) scene.motion.reset();  // The file has no animation.
+  }
   return scene;
 }
 

@@ -46,6 +46,9 @@ class BenchTest(unittest.TestCase):
 class Workloads(BenchTest):
     def test_there_are_46_workloads_and_the_subset_is_that_of_the_papers_table_2(self):
         rows = [line.split() for line in self.glint(0, "list", "workloads").stdout.splitlines()]
+        moving = [row[0] for row in rows if row[3:4] == ["lumibench-motion,"]]
+        self.assertEqual(moving, ["WKND_PT_MOTION", "BUNNY_SH_MOTION", "SPNZA_AO_MOTION"])
+        rows = [row for row in rows if row[0] not in moving]
         self.assertEqual(len(rows), 46)
         self.assertEqual(len({row[1] for row in rows}), 16)
         self.assertEqual([row[0] for row in rows if row[1] == "CHSNT"], ["CHSNT_PT"])
@@ -169,6 +172,17 @@ class Bench(BenchTest):
         (self.folder / "b/SHIP_SH/run.json").write_text(json.dumps(facts | {"exit": 4}))  # a failed run must spoil nothing
         self.glint(0, "report", "b", "-o", "page.html")
         self.glint(0, "model", "b", "--statistics-only")
+
+    def test_the_workloads_that_move_have_eight_frames_and_rows_of_their_sums(self):
+        self.glint(0, "bench", "lumibench-motion", *SMALL, "--mode", "functional", "--out", "out")
+        self.assertEqual(list(self.metrics()), ["WKND_PT_MOTION", "BUNNY_SH_MOTION", "SPNZA_AO_MOTION"])
+        for name in self.metrics():
+            run = json.loads((self.folder / "out" / name / "run.json").read_text())
+            self.assertEqual(len(run["frames"]), 8)
+            rays = sum(self.total(f"out/{name}/{frame}", "gpu.rays") for frame in run["frames"])
+            self.assertEqual(self.total(f"out/{name}", "gpu.rays"), rays)
+        self.glint(0, "run", "wknd_pt_motion", "--frames", "3", *SMALL, "--mode", "functional", "--out", "one")
+        self.assertEqual((self.folder / "one/frame-0003/image.pfm").read_bytes(), (self.folder / "out/WKND_PT_MOTION/frame-0003/image.pfm").read_bytes())
 
     def test_resume_leaves_out_what_is_complete_and_runs_again_what_another_configuration_left(self):
         def runs(*more):

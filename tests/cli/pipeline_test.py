@@ -10,8 +10,8 @@ import subprocess
 import glint_case
 from glint_case import ROOT, GlintTest, read_png
 
-PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion", "reordering", "denoise"]
-LISTS = ["denoise"]  # examples with several launches, whose file `glint init` does not write
+PICTURES = ["mandelbrot", "hello_triangle", "spheres", "cutout", "materials", "ambient_occlusion", "reordering", "denoise", "temporal"]
+LISTS = ["denoise", "temporal"]  # examples with several launches, whose file `glint init` does not write
 
 
 def npy(path):
@@ -131,6 +131,38 @@ class Lists(PipelineTest):
         for name in ("out", "out/launch-0-trace"):
             self.assertEqual(json.loads((self.folder / name / "run.json").read_text())["partial"]["cycles"], 6027)
         self.assertFalse((self.folder / "out/launch-1-denoise").exists())
+
+    def test_frames_repeat_the_list_with_their_number(self):
+        self.copy("temporal")
+        self.run_file(self.edit(("count = 8", "count = 2")))
+        launches = json.loads((self.folder / "out/run.json").read_text())["launches"]
+        self.assertEqual(launches, [f"launch-{3 * frame + i}-frame{frame}-{name}"
+                                    for frame in (0, 1) for i, name in enumerate(("trace", "accumulate", "denoise"))])
+
+    def test_accumulation_over_frames_brings_noise_down(self):
+        self.copy("temporal")
+        errors = []
+        for count in (1, 16):
+            self.run_file(self.edit(("count = 8", f"count = {count}"), ("reach = 2", "reach = 0")))
+            _, _, picture = glint_case.read_png(self.folder / "out/picture.png")
+            floor = [picture[3 * (y * 96 + x)] for y in range(80, 96) for x in range(96)]  # the open floor sees most of the sky
+            mean = sum(floor) / len(floor)
+            errors.append((sum((light - mean) ** 2 for light in floor) / len(floor)) ** 0.5)
+        self.assertLess(errors[1], 0.5 * errors[0])
+
+    def test_frames_without_a_list_or_without_a_number_are_refused(self):
+        self.copy("temporal")
+        for old, new, message in (("count = 8", "count = 0", "expected 1 to 10000"), ("count = 8", "counts = 8", "[frames] needs 'count'"),
+                                  ("count = 8", 'count = 8\nfirst = 2', "first")):
+            done = self.glint("run", self.edit((old, new)), "--mode", "functional", "--out", "out")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(message, done.stderr)
+        spheres = (ROOT / "examples/spheres/pipeline.toml").read_text()
+        self.copy("spheres")
+        (self.folder / "framed.toml").write_text(spheres + "\n[frames]\ncount = 2\n")
+        done = self.glint("run", "framed.toml", "--mode", "functional", "--out", "out")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("[frames] repeats a list of launches, and there is none", done.stderr)
 
     def test_mistakes_of_lists_name_their_lines(self):
         self.copy("denoise")

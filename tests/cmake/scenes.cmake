@@ -12,4 +12,8 @@ if(TARGET glint)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   add_test(NAME scene_files
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/scene_file_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
+  foreach(suite Frames Timing Animations CameraPaths)
+    add_test(NAME cli_frames_${suite}
+      COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/frames_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR} ${suite})
+  endforeach()
 endif()

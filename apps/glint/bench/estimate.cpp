@@ -88,7 +88,7 @@ double time_weight(const NamedWorkload& workload, bool timing, uint64_t pixels, 
   const double loading = 0.6e-6 * needs.triangles + 0.1;
   const double measured = workload.shader == "pt" ? needs.pt : workload.shader == "sh" ? needs.sh : needs.ao;
   const double simulating = std::max(0.1, measured - loading) * double(pixels * samples) / (128 * 128 * 2);
-  return loading + (timing ? simulating : simulating / kFunctionalSpeedUp);
+  return loading + double(workload.num_frames) * (timing ? simulating : simulating / kFunctionalSpeedUp);
 }
 
 uint64_t available_memory() {

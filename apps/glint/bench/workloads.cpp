@@ -21,6 +21,15 @@ constexpr std::string_view kSubset[] = {"SPNZA_AO", "BUNNY_AO", "WKND_PT", "SHIP
 // The leaves of this scene are cut out by an any-hit shader, and the paper runs it only with path tracing.
 constexpr std::string_view kPathTracingOnly = "CHSNT";
 
+constexpr std::string_view kMotion = "_MOTION";  // at the end of a name
+// One scene in which things move, one that deforms, and one through which the camera goes. A third of a
+// second has the coherence of real animation from frame to frame.
+constexpr std::string_view kMotionFrames = "0:7";
+constexpr uint64_t kNumMotionFrames = 8;
+constexpr NamedWorkload kMotions[] = {{"WKND", "pt", false, kMotionFrames, kNumMotionFrames},
+                                      {"BUNNY", "sh", false, kMotionFrames, kNumMotionFrames},
+                                      {"SPNZA", "ao", false, kMotionFrames, kNumMotionFrames}};
+
 std::string upper(std::string_view text) {
   std::string out(text);
   for (char& c : out) c = char(std::toupper(uint8_t(c)));
@@ -40,6 +49,7 @@ bool is_called(const NamedWorkload& workload, const std::string& name) {
   if (workload.is_program())
     return name == upper(workload.scene) ||
            (name == "COMPUTE" && !compute::find_program(workload.scene)->is_variant);
+  if (!workload.frames.empty()) return name == "LUMIBENCH-MOTION" || name == workload.name();
   return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene ||
          name == upper(workload.shader) || name == workload.name();
 }
@@ -58,7 +68,8 @@ const WorkloadInfo& find_workload(const std::string& name) {
 }
 
 std::string NamedWorkload::name() const {
-  return is_program() ? std::string(scene) : std::string(scene) + "_" + upper(shader);
+  if (is_program()) return std::string(scene);
+  return std::string(scene) + "_" + upper(shader) + std::string(frames.empty() ? "" : kMotion);
 }
 
 std::vector<NamedWorkload> lumibench() {
@@ -73,8 +84,13 @@ std::vector<NamedWorkload> lumibench() {
   return out;
 }
 
+std::vector<NamedWorkload> lumibench_motion() {
+  return {std::begin(kMotions), std::end(kMotions)};
+}
+
 std::vector<NamedWorkload> all_workloads() {
   std::vector<NamedWorkload> out = lumibench();
+  out.insert(out.end(), std::begin(kMotions), std::end(kMotions));
   for (const compute::Program& program : compute::all_programs()) out.push_back({program.name, ""});
   return out;
 }
@@ -87,13 +103,13 @@ std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& name
     for (size_t i = 0; i < all.size(); ++i)
       if (is_called(all[i], upper(name))) chosen[i] = found = true;
     if (found) continue;
-    std::vector<std::string> known = {"lumibench", "subset", "compute"};
+    std::vector<std::string> known = {"lumibench", "subset", "lumibench-motion", "compute"};
     for (const std::string_view scene : kScenes) known.emplace_back(scene);
     for (const NamedWorkload& workload : all) known.push_back(workload.name());
     const std::string guess = nearest_in_any_case(name, known);
     throw UserError({}, "there is no workload or suite '" + name + "'",
                     guess.empty() ? "'glint list workloads' and 'glint list programs' name them; suites are "
-                                    "lumibench, subset and compute"
+                                    "lumibench, subset, lumibench-motion and compute"
                                   : "did you mean '" + guess + "'?");
   }
   std::vector<NamedWorkload> out;
@@ -103,13 +119,17 @@ std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& name
 }
 
 std::optional<SceneAndShader> split_workload(const std::string& name) {
+  for (const NamedWorkload& moving : kMotions)
+    if (upper(name) == moving.name())
+      return SceneAndShader{std::string(moving.scene), std::string(moving.shader),
+                            std::string(moving.frames)};
   const size_t bar = name.rfind('_');
   if (bar == std::string::npos) return std::nullopt;
   const std::string scene = upper(name.substr(0, bar)), shader = upper(name.substr(bar + 1));
   for (const scenes::SceneInfo& info : scenes::scene_list())
     for (const WorkloadInfo& set : kWorkloads)
       if (info.name == scene && upper(set.name) == shader)
-        return SceneAndShader{scene, std::string(set.name)};
+        return SceneAndShader{scene, std::string(set.name), ""};
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,11 +29,14 @@ inline constexpr std::array<WorkloadInfo, 3> kWorkloads{{
 // Returns the shader set of that name. Throws UserError with the nearest name when there is none.
 const WorkloadInfo& find_workload(const std::string& name);
 
-// Names a workload as the paper does: SHIP_SH. A compute program has its own name alone.
+// Names a workload as the paper does: SHIP_SH. One with frames ends in _MOTION. A compute program has its own
+// name alone.
 struct NamedWorkload {
   std::string_view scene;   // "SHIP", or "bfs"
   std::string_view shader;  // "sh", or "" for a compute program
   bool in_subset = false;   // It is in the paper's Table 2.
+  std::string_view frames;  // "0:7", as the option --frames names them; "": it is one still frame
+  uint64_t num_frames = 1;
   bool is_program() const { return shader.empty(); }
   std::string name() const;
 };
@@ -41,17 +45,22 @@ struct NamedWorkload {
 // only pt.
 std::vector<NamedWorkload> lumibench();
 
-// Returns those, and the programs of the compute suite behind them.
+// Returns the workloads whose scenes move: several frames each.
+std::vector<NamedWorkload> lumibench_motion();
+
+// Returns all of those, and the programs of the compute suite behind them.
 std::vector<NamedWorkload> all_workloads();
 
 // Returns the workloads that the given names stand for. A name is that of a suite (`lumibench`, `subset`,
-// `compute`), a scene, a shader set or a workload, in any case of letters. Each workload appears once, in the
-// order of all_workloads(). Throws UserError with the nearest name for an unknown name.
+// `lumibench-motion`, `compute`), a scene, a shader set or a workload, in any case of letters. Each workload
+// appears once, in the order of all_workloads(). A scene and a shader set stand for still workloads. Throws
+// UserError with the nearest name for an unknown name.
 std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& names);
 
-// Holds scene and shader set of a name like SHIP_SH. Every scene may stand with every set.
+// Holds scene and shader set of a name like SHIP_SH. Every scene may stand with every set. The names of
+// lumibench_motion() have frames, too.
 struct SceneAndShader {
-  std::string scene, shader;
+  std::string scene, shader, frames;
 };
 std::optional<SceneAndShader> split_workload(const std::string& name);
 

@@ -20,8 +20,9 @@ void add_bench(Command app, Session& session) {
       app.add_subcommand("bench", "Run workloads of LumiBench or compute programs, and gather their metrics");
   command.add_option(
       "NAMES", options->names,
-      "What to run: lumibench (all 46, the default), subset (8), compute (all programs), a scene, "
-      "pt, sh, ao, workloads or programs; 'glint list workloads' and 'glint list programs' "
+      "What to run: lumibench (all 46, the default), subset (8), lumibench-motion (3, of several frames), "
+      "compute (all programs), a scene, pt, sh, ao, workloads or programs; 'glint list workloads' and 'glint "
+      "list programs' "
       "name them");
   command.add_flag("--small", options->small, "Run compute programs on their small inputs");
   add_jobs_option(command, options->processes);

@@ -44,6 +44,9 @@ Rows workload_rows() {
   for (const NamedWorkload& workload : lumibench())
     rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader),
                     workload.in_subset ? "subset" : ""});
+  for (const NamedWorkload& workload : lumibench_motion())
+    rows.push_back({workload.name(), std::string(workload.scene), std::string(workload.shader),
+                    fmt::format("lumibench-motion, frames {}", workload.frames)});
   return rows;
 }
 

@@ -84,8 +84,10 @@ double run_interval(const Session& session, const ModelOptions& options, const r
   return double(sum.cycles);
 }
 
-// Returns the number of launches of a run: those of a compute program stand in a table of their own.
+// Returns the number of launches of a run: those of a compute program stand in a table of their own, and each
+// frame of a sequence is one.
 double launches_of(const std::string& directory) {
+  if (const size_t frames = report::frames_of(directory).size(); frames > 0) return double(frames);
   const std::string path = directory + "/launches.csv";
   const std::optional<std::string> text = read_regular_file(path);
   return text ? std::max(1.0, double(report::read_csv(*text, path).rows.size())) : 1.0;

@@ -24,15 +24,19 @@ struct RunOptions {
   std::string kernel_launch;      // launch file of a kernel
   std::vector<std::string> more;  // Amber scripts after the first
   ScriptOptions script;           // for Amber scripts
+  std::string caches;             // "cold", "warm", or empty: the default of what runs
   bool small = false;             // for compute programs
 };
+
+bool is_scene(const std::string& what) {
+  return !names_script(what) && !names_pipeline(what) && !names_kernel(what) && !names_program(what) &&
+         !names_capsule(what);
+}
 
 // Refuses options that only scenes understand.
 void check_scene_options(const RunOptions& options) {
   const std::string &what = options.scene.scene, option = options.scene.given();
-  if (option.empty() || (!names_script(what) && !names_pipeline(what) && !names_kernel(what) &&
-                         !names_program(what) && !names_capsule(what)))
-    return;
+  if (option.empty() || is_scene(what)) return;
   throw UserError({}, fmt::format("{} belongs to scenes, and '{}' is none", option, what),
                   option == "--exr" ? "a pipeline keeps a picture with save = \"NAME.exr\" under [[image]]"
                   : names_capsule(what) ? "a capsule has all that its launch needs"
@@ -54,8 +58,8 @@ Exit run(const Session& session, const RunOptions& options) {
   if (options.script.strict)
     throw UserError({}, "--strict belongs to Amber scripts",
                     "in other launches every access outside of a buffer or an image is a fault");
-  if (options.script.caches != "cold")
-    throw UserError({}, "--caches belongs to Amber scripts",
+  if (!options.caches.empty() && !is_scene(what))
+    throw UserError({}, kCachesElsewhere,
                     "files with a list of launches say it for each launch: caches = \"warm\"");
   if (!options.more.empty())
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
@@ -93,17 +97,19 @@ void add_scene_options(Command command, RunOptions& options) {
                   "Folder whose shaders are used instead of the workload's built-in ones")
       .type_name("DIR");
   add_frame_options(command, options.scene.frame);
+  add_sequence_options(command, options.scene.sequence);
   add_assets_option(command, options.scene.assets);
   command.add_flag(
       "--strict", options.script.strict,
       "Let accesses outside of buffers and images be faults in Amber scripts that do not declare "
       "robust access");
   command
-      .add_option("--caches", options.script.caches,
-                  "Selects what each launch of an Amber script finds in the L2 and in DRAM's row buffers: "
-                  "cold means nothing, and warm what the launch before it has left")
-      .one_of({"cold", "warm"})
-      .capture_default_str();
+      .add_option(
+          "--caches", options.caches,
+          "Selects what each launch of an Amber script, and each frame, finds in the L2 and in DRAM's "
+          "row buffers: cold means nothing, and warm what the launch before it has left (default: cold "
+          "for scripts, warm for frames)")
+      .one_of({"cold", "warm"});
   command.add_flag("--small", options.small, "Run a compute program on its small input");
   command.add_flag("--exr", options.scene.exr,
                    "Also write the picture of a scene as image.exr: floats of 32 bits, with transparency");
@@ -125,6 +131,8 @@ void add_run(Command app, Session& session) {
   command.callback([&session, options, command] {
     finish_launch_options(command, options->launch);
     options->scene.shader_given = command.count("--shader") > 0;
+    options->scene.sequence.caches = options->caches;
+    if (!options->caches.empty()) options->script.caches = options->caches;
     session.action = [&session, options] { return run(session, *options); };
   });
 }

@@ -88,10 +88,11 @@ void add_sweep(const std::string& folder, ReportInputs& out) {
   out.collections.push_back(std::move(one));
 }
 
-// Adds the launches of a run that has a list of them, after the run itself, which has their sum.
-void add_launches(const std::string& folder, ReportInputs& out) {
-  nlohmann::ordered_json one = collection("launches", folder);
-  for (const std::string& name : report::launches_of(folder)) {
+// Adds the launches or frames of a run that has a list of them, after the run itself, which has their sum.
+void add_parts(const char* kind, const std::string& folder, const std::vector<std::string>& names,
+               ReportInputs& out) {
+  nlohmann::ordered_json one = collection(kind, folder);
+  for (const std::string& name : names) {
     const fs::path launch = fs::path(folder) / name;
     if (const std::string reason = why_incomplete(launch); !reason.empty()) {
       one["failed"].push_back(failure(launch, reason));
@@ -151,7 +152,8 @@ void add_named(const std::string& name, ReportInputs& out) {
   if (!is_run && fs::exists(path / "metrics.csv")) return add_bench(name, out);
   if (!is_run && fs::exists(path / "sweep.json")) return add_sweep(name, out);
   if (is_run || !has_models) out.runs.push_back(name);
-  if (is_run) add_launches(name, out);
+  if (is_run) add_parts("launches", name, report::launches_of(name), out);
+  if (is_run) add_parts("frames", name, report::frames_of(name), out);
   if (has_models) add_models((path / "models.csv").string(), name, name, out);
 }
 

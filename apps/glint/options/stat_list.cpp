@@ -10,6 +10,7 @@
 #include "isa/program.h"
 #include "pipeline/params.h"
 #include "pipeline/run_stats.h"
+#include "pipeline/structure_stats.h"
 #include "pipeline/timing_machine.h"
 #include "report/terminal/table.h"
 
@@ -32,12 +33,18 @@ std::vector<report::StatRow> all_stats() {
   pipeline::GpuParams params;
   params.cores = 1;
   std::vector<report::StatRow> out = report::stat_names(pipeline::TimingMachine(params, world, false).root());
-  for (report::StatRow& row : report::stat_names(pipeline::RunStats(pipeline::FunctionalCounts{}).root())) {
-    if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; }))
-      continue;
-    row.doc += " The functional machine counts it.";
-    out.push_back(std::move(row));
-  }
+  const auto add = [&](const stats::Group& root, const char* where) {
+    for (report::StatRow& row : report::stat_names(root)) {
+      if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; }))
+        continue;
+      row.doc += where;
+      out.push_back(std::move(row));
+    }
+  };
+  pipeline::RunStats functional(pipeline::FunctionalCounts{});
+  add(functional.root(), " The functional machine counts it.");
+  const pipeline::StructureStats frames(&functional.root(), {});
+  add(functional.root(), " Runs of frames have it, on either machine.");
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "apps/glint/bench/progress_pipe.h"
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/frames.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pictures/exr.h"
 #include "pipeline/render.h"
@@ -33,6 +34,7 @@ void take_workload_name(SceneOptions& options) {
                                     named->scene, named->shader, options.shader));
   options.scene = named->scene;
   options.shader = named->shader;
+  if (!options.sequence.is_wanted()) options.sequence.frames = named->frames;
 }
 
 // Names of scenes have no dots and slashes, so what has one is a file of a kind that Glint does not know.
@@ -50,48 +52,6 @@ void refuse_file(const std::string& what) {
       "kernels (.ptx), capsules (.capsule), Amber scripts (.amber) and the scenes of 'glint list scenes'");
 }
 
-pipeline::RenderJob make_job(const Session& session, const SceneOptions& options,
-                             const LaunchOptions& launch) {
-  pipeline::GpuParams gpu = gpu_of(session.resources, launch);
-  pipeline::RenderJob job = frame_job(session, options, launch.threads);
-  job.gpu = std::move(gpu);
-  job.timing = launch.mode == "timing";
-  job.no_skip = launch.no_skip;
-  job.on_fault = launch.on_fault;
-  job.observe = launch.observe;
-  check_observation(job.observe, job.timing);
-  check_max_cycles(launch.max_cycles, job.timing);
-  return job;
-}
-
-std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options,
-                     const LaunchOptions& launch) {
-  const scenes::RenderParams& frame = job.frame;
-  const std::string window = frame.frame_width ? fmt::format(" at {},{} of {}x{}", frame.crop_x, frame.crop_y,
-                                                             frame.frame_width, frame.frame_height)
-                                               : "";
-  return fmt::format("{} {}  {}x{}{}, {} spp, {} on {}", job.scene.name, options.shader, frame.width,
-                     frame.height, window, frame.samples, launch.mode, launch.config);
-}
-
-report::RunInfo describe_run(const Session& session, const SceneOptions& options, const LaunchOptions& launch,
-                             const pipeline::RenderJob& job) {
-  report::RunInfo info = new_run_info(session, job.gpu, launch.config, launch.mode);
-  info.scene = job.scene.name;
-  info.scene_form = job.scene.form;
-  if (scenes::names_scene_file(options.scene)) info.scene_file = options.scene;
-  info.scene_note = job.scene.note;
-  info.scene_hash = job.scene.hash();
-  info.scene_triangles = job.scene.triangles();
-  info.scene_fraction = job.scene.fraction();
-  info.shader = options.shader;
-  info.frame = scenes::values_of(job.frame);
-  info.overrides = options.frame.overrides();
-  info.on_fault = exec::name_of(launch.on_fault);
-  info.compact = launch.compact();
-  return info;
-}
-
 // Renders the job and leaves its files in the directory.
 pipeline::RenderResult render_into(const Session& session, const report::RunDirectory& directory,
                                    report::RunInfo& info, pipeline::RenderJob& job,
@@ -102,9 +62,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     job.watch = watch;
     job.watch.is_bounded = has_built_in_shaders;  // Their loops count to numbers of rays.
     pipeline::RenderResult rendered = pipeline::render_and_drain(job);
-    const pipeline::StructureCounts& made = rendered.structures;
-    info.structures = {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
-                       made.instances, made.top_depth, made.bottom_depth};
+    info.structures = structure_info(rendered.structures);
     return rendered;
   };
   const auto keep = [&](const pipeline::RenderResult& rendered) {
@@ -122,7 +80,8 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
 }  // namespace
 
 std::string SceneOptions::given() const {
-  return exr ? "--exr" : frame.given();
+  const std::string own = exr ? "--exr" : frame.given();
+  return !own.empty() ? own : sequence.is_wanted() ? "--frames" : sequence.given();
 }
 
 void check_scene(SceneOptions& options) {
@@ -140,30 +99,80 @@ pipeline::RenderJob frame_job(const Session& session, const SceneOptions& option
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
   ProgressPipe pipe(session.progress_descriptor, "loading");
-  job.scene = scenes::load_scene(options.scene, {options.assets, options.instancing,
-                                                 [&](double part) {
-                                                   progress.update(uint64_t(100 * part), 100);
-                                                   pipe.update(uint64_t(1000 * part), 1000);
-                                                 },
-                                                 threads});
+  job.scene =
+      scenes::load_scene(options.scene, {options.assets, options.instancing,
+                                         [&](double part) {
+                                           progress.update(uint64_t(100 * part), 100);
+                                           pipe.update(uint64_t(1000 * part), 1000);
+                                         },
+                                         threads, options.sequence.is_wanted(), options.sequence.animation});
   scenes::override_scene(job.scene, options.frame.overrides());
   return job;
 }
 
+pipeline::RenderJob scene_job(const Session& session, const SceneOptions& options,
+                              const LaunchOptions& launch) {
+  pipeline::GpuParams gpu = gpu_of(session.resources, launch);
+  pipeline::RenderJob job = frame_job(session, options, launch.threads);
+  job.gpu = std::move(gpu);
+  job.timing = launch.mode == "timing";
+  job.no_skip = launch.no_skip;
+  job.on_fault = launch.on_fault;
+  job.observe = launch.observe;
+  check_observation(job.observe, job.timing);
+  check_max_cycles(launch.max_cycles, job.timing);
+  return job;
+}
+
+report::StructureInfo structure_info(const pipeline::StructureCounts& made) {
+  return {made.bytes,     made.triangles, made.procedurals, made.bottom_levels,
+          made.instances, made.top_depth, made.bottom_depth};
+}
+
+std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options,
+                     const LaunchOptions& launch) {
+  const scenes::RenderParams& frame = job.frame;
+  const std::string window = frame.frame_width ? fmt::format(" at {},{} of {}x{}", frame.crop_x, frame.crop_y,
+                                                             frame.frame_width, frame.frame_height)
+                                               : "";
+  return fmt::format("{} {}  {}x{}{}, {} spp, {} on {}", job.scene.name, options.shader, frame.width,
+                     frame.height, window, frame.samples, launch.mode, launch.config);
+}
+
+report::RunInfo describe_scene(const Session& session, const SceneOptions& options,
+                               const LaunchOptions& launch, const pipeline::RenderJob& job) {
+  report::RunInfo info = new_run_info(session, job.gpu, launch.config, launch.mode);
+  info.scene = job.scene.name;
+  info.scene_form = job.scene.form;
+  if (scenes::names_scene_file(options.scene)) info.scene_file = options.scene;
+  info.scene_note = job.scene.note;
+  info.scene_hash = job.scene.hash();
+  info.scene_triangles = job.scene.triangles();
+  info.scene_fraction = job.scene.fraction();
+  info.shader = options.shader;
+  info.frame = scenes::values_of(job.frame);
+  info.overrides = options.frame.overrides();
+  info.on_fault = exec::name_of(launch.on_fault);
+  info.compact = launch.compact();
+  return info;
+}
+
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
   check_scene(options);
+  if (options.sequence.is_wanted()) return run_frames(session, options, launch);
+  check_without_frames(options.sequence);
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
   const std::unique_ptr<pipeline::StructureCache> structures =
       open_structure_cache(launch.shaders, session.plugins);
   exec::PrintLog prints(launch.print_limit);
-  pipeline::RenderJob job = make_job(session, options, launch);
+  pipeline::RenderJob job = scene_job(session, options, launch);
   job.glsl = glsl_options(launch.shaders, cache.get());
   job.structure_cache = structures.get();
   job.prints = &prints;
   report::RunDirectory directory(
       launch.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, launch.mode)
                          : launch.out);
-  report::RunInfo info = describe_run(session, options, launch, job);
+  report::RunInfo info = describe_scene(session, options, launch, job);
   const std::string title = title_of(job, options, launch);
   setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files = {

@@ -1,13 +1,15 @@
-// Declares `glint run SCENE`, which renders one frame of a scene on the simulated GPU.
+// Declares `glint run SCENE`, which renders a frame of a scene, or several, on the simulated GPU.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>
 
 #include "apps/glint/options/frame_options.h"
+#include "apps/glint/options/sequence_options.h"
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/render.h"
+#include "report/files/run_directory.h"
 
 namespace glint::app {
 
@@ -18,6 +20,7 @@ struct SceneOptions {
   bool instancing = false, shader_given = false;
   bool exr = false;  // also keep the picture as image.exr
   FrameOptions frame;
+  SequenceOptions sequence;
   // Returns the first option that was given and has no meaning for what is not a scene, or "".
   std::string given() const;
 };
@@ -28,6 +31,16 @@ void check_scene(SceneOptions& options);
 
 // Loads the scene and returns the frame that the options ask for, without a machine.
 pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads);
+
+// Returns the same with its machine.
+pipeline::RenderJob scene_job(const Session& session, const SceneOptions& options,
+                              const LaunchOptions& launch);
+// Returns what run.json says of the job, and the title of its summary.
+report::RunInfo describe_scene(const Session& session, const SceneOptions& options,
+                               const LaunchOptions& launch, const pipeline::RenderJob& job);
+report::StructureInfo structure_info(const pipeline::StructureCounts& made);
+std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options,
+                     const LaunchOptions& launch);
 
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch);
 

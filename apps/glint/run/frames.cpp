@@ -1,0 +1,228 @@
+// Renders frames one after another.
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/glint/run/frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/recorded_run.h"
+#include "pictures/apng.h"
+#include "pictures/exr.h"
+#include "pipeline/description/camera_path.h"
+#include "pipeline/scene_launch.h"
+#include "pipeline/structure_cache.h"
+#include "pipeline/structure_stats.h"
+#include "report/files/run_directory.h"
+#include "scenes/camera_path.h"
+#include "setup/recorded_launch.h"
+
+namespace glint::app {
+namespace {
+
+constexpr const char* kAnimation = "animation.png";
+constexpr const char* kTable = "frames.csv";
+constexpr size_t kLinesShown = 8;  // of the summary, about frames
+
+std::string picture_of(uint64_t frame) {
+  return fmt::format("image-{:04}.png", frame);
+}
+
+// Sets the scene's motion and checks that it has the frames.
+void check_motion(const SceneOptions& options, const report::SequenceInfo& sequence, scenes::Scene& scene) {
+  const std::string& path = options.sequence.camera_path;
+  const FrameOptions& frame = options.frame;
+  if (!path.empty() && !(frame.eye + frame.look_at + frame.up + frame.fov).empty())
+    throw UserError({}, "--camera-path and --eye, --look-at, --up or --fov both place the camera",
+                    "leave out one of them");
+  if (!path.empty())
+    scene.motion = scenes::with_camera_path(scene.motion, pipeline::read_camera_path(path, scene.camera));
+  if (!scene.motion) {
+    std::vector<std::string> moving;
+    for (const scenes::SceneInfo& info : scenes::scene_list())
+      if (info.moves) moving.push_back(info.name);
+    throw UserError(
+        {}, fmt::format("nothing moves in {}, so it has no frames", scene.name),
+        fmt::format("--camera-path moves the camera of any scene; {} and glTF files with animations "
+                    "move by themselves",
+                    fmt::join(moving, ", ")));
+  }
+  check_range(sequence, *scene.motion, scene.name);
+}
+
+// Renders the frames of a sequence and keeps what each leaves.
+class FrameRun {
+ public:
+  FrameRun(const SceneOptions& options, pipeline::RenderJob& job, const report::RunDirectory& directory,
+           const report::RunInfo& info)
+      : options_(options), job_(job), directory_(directory), info_(info), device_(job.gpu) {}
+
+  pipeline::RenderResult run(const pipeline::LaunchWatch& watch) {
+    job_.watch = watch;
+    job_.watch.is_bounded = options_.shader_dir.empty();  // Their loops count to numbers of rays.
+    std::optional<pipeline::RenderResult> sum;
+    const report::SequenceInfo& sequence = *info_.sequence;
+    for (uint64_t frame = sequence.first; frame <= sequence.last; ++frame) {
+      pipeline::RenderResult result = render(frame);
+      if (!sum)
+        sum.emplace(std::move(result));
+      else
+        sum->add(result);
+      if (sum->end != pipeline::LaunchEnd::Whole) break;
+    }
+    return std::move(*sum);
+  }
+
+  // Writes the files of the sequence. Returns lines for the summary.
+  std::vector<std::string> keep() {
+    std::vector<std::string> lines = lines_;
+    const double fps = info_.sequence->fps;
+    // Fractions of whole numbers are exact; others are told in milliseconds.
+    const bool is_whole = fps == std::floor(fps);
+    const pictures::FrameTime time{uint16_t(is_whole ? 1 : std::min(std::round(1000 / fps), 65535.0)),
+                                   uint16_t(is_whole ? fps : 1000)};
+    directory_.write(kAnimation, pictures::apng_bytes(pngs_, time));
+    directory_.write(kTable, table_);
+    lines.push_back("animation  " + directory_.path_of(kAnimation));
+    lines.push_back("table      " + directory_.path_of(kTable));
+    return lines;
+  }
+
+ private:
+  // Brings the scene, and what the device sees of it, to a frame.
+  pipeline::StructureWork prepare(uint64_t frame) {
+    job_.scene.motion->pose(job_.scene, info_.sequence->seconds_of(frame));
+    scenes::override_scene(job_.scene, options_.frame.overrides());
+    if (const std::string why = scenes::why_blind(job_.scene.camera); !why.empty())
+      throw UserError({options_.sequence.camera_path}, fmt::format("in frame {} {}", frame, why));
+    if (world_) return world_->advance(job_);
+    world_ = std::make_unique<pipeline::SceneWorld>(job_);
+    return world_->first_work(job_);
+  }
+
+  pipeline::RenderResult render(uint64_t frame) {
+    const pipeline::StructureWork work = prepare(frame);
+    for (const std::string& note : work.notes) fmt::print(stderr, "warning: frame {}: {}\n", frame, note);
+    report::RunDirectory directory(directory_.path_of(report::frame_folder(frame)));
+    report::RunInfo info = info_of(frame);
+    const std::string title = fmt::format("{}, frame {}", info.scene, frame);
+    setup::begin_directory(directory, info, job_.gpu, title);
+    const auto launch = [&] {
+      pipeline::RenderResult result = pipeline::launch_scene(
+          device_, *world_, job_,
+          info.sequence->caches == "warm" ? pipeline::Caches::Warm : pipeline::Caches::Cold);
+      pipeline::add_structure_stats(result, work);
+      return result;
+    };
+    const auto keep_frame = [&](const pipeline::RenderResult& result) { keep(directory, result, info); };
+    pipeline::RenderResult result = record_launch(directory, info, launch, keep_frame, job_.prints);
+    note(frame, work, result, directory);
+    return result;
+  }
+
+  report::RunInfo info_of(uint64_t frame) const {
+    report::RunInfo info = info_;
+    info.frames.clear(), info.saved.clear(), info.outputs.clear();
+    info.moment = {frame, info_.sequence->seconds_of(frame)};
+    info.scene_hash = job_.scene.hash();
+    info.structures = structure_info(world_->structures);
+    return info;
+  }
+
+  void keep(const report::RunDirectory& directory, const pipeline::RenderResult& result,
+            report::RunInfo& info) {
+    const pictures::ImageView image{result.width, result.height, result.rgba};
+    pngs_.push_back(pictures::png_bytes(image));
+    directory.write("image.png", pngs_.back());
+    directory.write("image.pfm", pictures::pfm_bytes(image));
+    if (options_.exr) directory.write("image.exr", pictures::exr_bytes(image));
+    directory_.write(picture_of(info.moment->frame), pngs_.back());
+    note_not_finite("image.pfm", image, result.picture, result, info);
+    directory.write_stats(result.statistics(), info.compact);
+    write_observation(job_.observe, result, directory);
+  }
+
+  // Adds a frame to the table and to the summary.
+  void note(uint64_t frame, const pipeline::StructureWork& work, const pipeline::RenderResult& result,
+            const report::RunDirectory& directory) {
+    table_ += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", frame, info_.sequence->seconds_of(frame),
+                          result.cycles, result.warp_instructions, result.rays.rays, result.rays.nodes,
+                          work.bottom.built, work.bottom.refitted, work.top.built, work.top.refitted,
+                          work.expected_visits, work.expected_visits_rebuilt);
+    const uint64_t number = frame - info_.sequence->first;
+    if (number < kLinesShown)
+      lines_.push_back(fmt::format("frame {:<4} {}, {}", frame,
+                                   job_.timing
+                                       ? fmt::format("{} cycles", result.cycles)
+                                       : fmt::format("{} warp instructions", result.warp_instructions),
+                                   directory.path()));
+    if (number == kLinesShown) lines_.push_back("...");
+  }
+
+  const SceneOptions& options_;
+  pipeline::RenderJob& job_;
+  const report::RunDirectory& directory_;
+  const report::RunInfo& info_;
+  pipeline::Device device_;
+  std::unique_ptr<pipeline::SceneWorld> world_;
+  std::vector<std::string> pngs_, lines_;
+  std::string table_ =
+      "frame,seconds,cycles,warp_instructions,rays,nodes,bottom_levels_built,bottom_levels_refitted,"
+      "top_levels_built,top_levels_refitted,expected_visits,expected_visits_rebuilt\n";
+};
+
+// Adds to `info` the frames and the files of a sequence.
+void describe_sequence(const report::SequenceInfo& sequence, report::RunInfo& info) {
+  info.sequence = sequence;
+  for (uint64_t frame = sequence.first; frame <= sequence.last; ++frame) {
+    info.frames.push_back(report::frame_folder(frame));
+    info.saved.push_back(picture_of(frame));
+  }
+  info.saved.insert(info.saved.end(), {kAnimation, kTable});
+  info.outputs.push_back({kAnimation, "animation", true});
+}
+
+}  // namespace
+
+Exit run_frames(const Session& session, const SceneOptions& options, const LaunchOptions& launch) {
+  const report::SequenceInfo sequence = sequence_of(options.sequence);
+  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
+  const std::unique_ptr<pipeline::StructureCache> structures =
+      open_structure_cache(launch.shaders, session.plugins);
+  exec::PrintLog prints(launch.print_limit);
+  pipeline::RenderJob job = scene_job(session, options, launch);
+  check_motion(options, sequence, job.scene);
+  job.update = structure_update(options.sequence);
+  job.glsl = glsl_options(launch.shaders, cache.get());
+  job.structure_cache = structures.get();
+  job.prints = &prints;
+  report::RunDirectory directory(
+      launch.out.empty() ? fmt::format("out/{}_{}-{}-frames", job.scene.name, options.shader, launch.mode)
+                         : launch.out);
+  report::RunInfo info = describe_scene(session, options, launch, job);
+  describe_sequence(sequence, info);
+  const std::string title =
+      fmt::format("{}, frames {} to {} at {:.6g} a second", title_of(job, options, launch), sequence.first,
+                  sequence.last, sequence.fps);
+  setup::begin_directory(directory, info, job.gpu, title);
+  FrameRun frames(options, job, directory, info);
+  std::vector<std::string> files;
+  const pipeline::RenderResult sum = run_recorded(
+      session, launch.max_cycles, directory, info,
+      [&](const pipeline::LaunchWatch& watch) { return frames.run(watch); },
+      [&](const pipeline::RenderResult& ended) {
+        info.structures = structure_info(ended.structures);
+        directory.write_stats(ended.statistics(), info.compact);
+        files = frames.keep();
+        files.push_back("statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt"));
+      });
+  for (const std::string& warning : sum.warnings) fmt::print(stderr, "{}\n", warning);
+  return print_result(session, launch.json, job, sum, info, title, std::move(files));
+}
+
+}  // namespace glint::app
