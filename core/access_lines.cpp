@@ -35,10 +35,9 @@ void AccessLines::collect(MemoryAccess& access, const exec::WarpContext& warp, c
 void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpContext& warp,
                                      LaneMask lanes) const {
   if (tables_.rows == 0) return;
-  const exec::TraceFrame& frame = warp.frame();
   for_each_lane(lanes, [&](int lane) {
-    access.lines.add(tables_.entry(access.slot, frame.ray[size_t(lane)].candidate_row, lane),
-                     rt::kTableEntryBytes, lane);
+    access.lines.add(tables_.entry(access.slot, warp.ray(lane).candidate_row, lane), rt::kTableEntryBytes,
+                     lane);
   });
   access.num_table_lines = uint32_t(access.lines.lines().size());
 }
@@ -47,10 +46,9 @@ void AccessLines::collect_candidates(MemoryAccess& access, const exec::WarpConte
 // each ray, and the weights of a triangle. Model: the shader reads both, once, together with its record of
 // the binding table.
 void AccessLines::collect_ray_data(MemoryAccess& access, const exec::WarpContext& warp, LaneMask lanes) {
-  const exec::TraceFrame& frame = warp.frame();
   for_each_lane(lanes, [&](int lane) {
     access.lines.add(local_.record(next_record_++), LocalLayout::kRecordBytes, lane);
-    const rt::Hit& hit = frame.ray[size_t(lane)].committed;
+    const rt::Hit& hit = warp.ray(lane).committed;
     if (hit.valid() && hit.triangle_leaf != 0)
       access.lines.add(local_.attributes(access.slot, lane), LocalLayout::kAttributeBytes, lane);
   });

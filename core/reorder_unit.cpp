@@ -143,7 +143,7 @@ uint64_t ReorderUnit::move_threads(Cycle now) {
   }
   for (const Regrouping::Swap& swap : regrouping_.plan(warps_, params_.compact)) {
     const uint32_t a = members_[swap.warp_a], b = members_[swap.warp_b];
-    exec::swap_threads(warp(a), swap.lane_a, warp(b), swap.lane_b, core_.world.image->num_registers);
+    exec::swap_threads(warp(a), swap.lane_a, warp(b), swap.lane_b, *core_.world.image);
     std::swap(slots_[a].keys[swap.lane_a], slots_[b].keys[swap.lane_b]);
     core_.observers.tell(
         [&](CoreObserver& observer) { observer.swap_threads(now, a, swap.lane_a, b, swap.lane_b); });

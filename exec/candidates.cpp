@@ -28,7 +28,7 @@ void Candidates::present(WarpContext& warp, LaneMask gathered) const {
 
 void Candidates::count(const WarpContext& warp) {
   for_each_lane(warp.simt.active, [&](int lane) {
-    const rt::CandidateTable* table = warp.frame().ray[size_t(lane)].table;
+    const rt::CandidateTable* table = warp.ray(lane).table;
     if (!table) return;
     counts_.gathered += table->gathered;
     counts_.dropped += table->dropped;

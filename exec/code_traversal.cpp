@@ -126,7 +126,7 @@ void take_ray(Record record, rt::RayState& state, const mem::AddressSpace& memor
 uint32_t CodeTraversal::record_of_rays(const WarpContext& warp) const {
   const TraversalCode& code = world_.traversal;
   uint32_t index = warp.depth - 1;
-  if (warp.depth == 0 || warp.rays != warp.frames[warp.depth - 1]->ray.data()) {
+  if (warp.depth == 0 || warp.rays != warp.traced->data()) {
     uint32_t place = 0;
     while (!warp.queries[place] || warp.queries[place]->data() != warp.rays) ++place;
     GLINT_DCHECK(place % kMaxNumbered < code.queries, "ray query {} has no record", place % kMaxNumbered);
@@ -146,13 +146,14 @@ void CodeTraversal::walk(WarpContext& warp, uint32_t pc) {
   if (!travelling) return;
   const Shader& code = world_.image->shaders[world_.traversal.shader];
   const uint32_t at = record_of_rays(warp);
+  const uint8_t payload = world_.image->special_row[size_t(isa::Special::Payload)];
   for_each_lane(travelling, [&](int lane) {
     rt::RayState& state = warp.rays[lane];
     Record record(warp, at, lane);
     if (state.stack_size > 0)
       put_ray(record, state, world_.traversal.stack_entries);  // in the state that begin() left
     put_hit(record, kHit, state.ray, state.committed, *world_.memory);
-    warp.regs.bank[2][size_t(isa::Special::Payload) * kLanes + size_t(lane)] = at;
+    if (payload != Image::kNoRow) warp.regs.bank[2][payload * size_t(kLanes) + size_t(lane)] = at;
   });
   calls_.count_called(code.stage, uint64_t(std::popcount(travelling)));
   SimtStack& simt = warp.simt;

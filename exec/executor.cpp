@@ -47,7 +47,7 @@ void Executor::execute_effect(WarpContext& warp, Issued& issued, Cycle now) {
   const isa::Inst& inst = *issued.inst;
   const isa::OpRow& row = *issued.row;
   if (reads_clock_) [[unlikely]]
-    fill_clock(warp, now, clock_mhz_);
+    fill_clock(*world_.image, warp, now, clock_mhz_);
   if (seen_.is_used()) seen_.view().begin(now);
   bool ok = true;
   if (row.effect == Effect::None) {

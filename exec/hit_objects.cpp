@@ -138,7 +138,7 @@ bool HitObjects::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow&
 // Keeps what the lane's ray of the innermost trace has found.
 bool HitObjects::record(WarpContext& warp, int lane, HitObject& object) {
   const TraceFrame& frame = warp.frame();
-  rt::RayState& state = warp.frame().ray[size_t(lane)];
+  rt::RayState& state = warp.ray(lane);
   if (state.broken && !ray_faults_.let_pass_broken(warp, lane, state)) [[unlikely]]
     return false;
   const bool hit = state.committed.valid();
@@ -177,7 +177,7 @@ bool HitObjects::run_corner(WarpContext& warp, const isa::Inst& inst) {
   const uint32_t* const number = warp.regs.read(inst.operand[1]);
   std::array<uint32_t, kLanes> values{};
   for_each_lane(warp.depth == 0 ? 0 : warp.regs.exec, [&](int lane) {
-    const rt::RayState& state = warp.frame().ray[size_t(lane)];
+    const rt::RayState& state = warp.ray(lane);
     const rt::Hit& hit = stage == isa::Stage::AnyHit ? state.candidate : state.committed;
     values[size_t(lane)] = as_bits(corner_of(hit, number[lane], *world_.memory));
   });
@@ -280,7 +280,7 @@ bool HitObjects::begin_trace(WarpContext& warp, const isa::Inst& inst) {
   for (; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     const HitObject& object = objects[lane];
-    rt::RayState& state = warp.frame().ray[size_t(lane)];
+    rt::RayState& state = warp.ray(lane);
     warp.frame().time[size_t(lane)] = object.time;
     state.ray = object.ray;
     state.ray.sbt_offset = state.ray.sbt_stride = 0;  // The record is already known.

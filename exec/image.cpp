@@ -18,9 +18,19 @@ bool has_label(const isa::OpRow& row) {
   return false;
 }
 
-// Returns the instruction with its constant slots moved by `first_constant` rows and its label by
-// `first_inst` instructions.
-isa::Inst relocate(isa::Inst inst, const isa::OpRow& row, uint32_t first_inst, uint32_t first_constant) {
+// Gives rows to the specials that the programs read.
+void place_specials(Image& image, const std::vector<isa::Program>& programs) {
+  isa::SpecialSet read;
+  for (int s = int(isa::Special::LaneId); s <= int(isa::Special::LaunchZ); ++s) read.set(size_t(s));
+  for (const isa::Program& program : programs) read |= isa::specials_read_by(program.code);
+  for (size_t s = 0; s < read.size(); ++s)
+    image.special_row[s] = read[s] ? uint8_t(image.num_special_rows++) : Image::kNoRow;
+}
+
+// Returns the instruction with the slots of its constants moved by `first_constant` rows, its specials in
+// their rows and its label moved by `first_inst` instructions.
+isa::Inst relocate(isa::Inst inst, const isa::OpRow& row, uint32_t first_inst, uint32_t first_constant,
+                   const Image& image) {
   int slot = 0;
   for (isa::OperandKind kind : row.operands.view()) {
     const bool predicate = kind == isa::OperandKind::SrcPred || kind == isa::OperandKind::DstPred;
@@ -28,6 +38,8 @@ isa::Inst relocate(isa::Inst inst, const isa::OpRow& row, uint32_t first_inst, u
       isa::Slot& operand = inst.operand[size_t(slot)];
       if (!predicate && operand >> isa::kBankShift == isa::kConstantBank >> isa::kBankShift)
         operand = isa::Slot(operand + first_constant);
+      if (!predicate && operand >> isa::kBankShift == isa::kSpecialBank >> isa::kBankShift)
+        operand = isa::Slot(isa::kSpecialBank + image.special_row[operand & isa::kSlotIndexMask]);
     }
   }
   if (has_label(row)) inst.imm += int32_t(first_inst);
@@ -51,7 +63,7 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   const uint32_t first_file = uint32_t(image.files.size());
   for (size_t i = 0; i < program.code.size(); ++i) {
     const isa::OpRow& row = isa::op_table()[program.code[i].op];
-    image.code.emplace_back(relocate(program.code[i], row, first, uint32_t(constants.size())), row);
+    image.code.emplace_back(relocate(program.code[i], row, first, uint32_t(constants.size()), image), row);
     isa::Line line = i < program.lines.size() ? program.lines[i] : isa::Line{};
     line.file = uint16_t(line.file + first_file);
     image.lines.push_back(line);
@@ -70,6 +82,7 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
 Image link(const std::vector<isa::Program>& programs) {
   Image image;
   std::vector<uint32_t> constants;
+  place_specials(image, programs);
   for (const isa::Program& program : programs) append(image, program, constants);
   for (Step& step : image.code)
     step.target_is_join =

@@ -73,6 +73,11 @@ struct Image {
   std::vector<isa::Program> programs;  // one per shader, as they were compiled; for listings
   Rows constants;
   uint32_t num_registers = 1;  // the highest of all shaders
+  // These are the rows of a warp's specials, by isa::Special. Specials that no shader reads have kNoRow,
+  // except LaneId to LaunchZ, which lie at the start: the machine reads there which thread a lane has.
+  static constexpr uint8_t kNoRow = 0xff;
+  std::array<uint8_t, size_t(isa::kNumSpecials)> special_row{};
+  uint32_t num_special_rows = 0;
 
   std::string line_of(uint32_t pc) const;   // such as "shader.rchit:12", or the file or shader alone
   std::string place_of(uint32_t pc) const;  // such as "shader.rchit:12 (instruction 87: fma.rn.f32)"

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "base/num_lanes.h"
 #include "isa/inst.h"
@@ -63,16 +64,38 @@ void match_tables(TraceFrame& frame, const TraceFrame& other) {
   for (rt::CandidateTable& table : frame.tables) table.row.resize(other.tables[0].row.size());
 }
 
-void swap_rays(TraceFrame& a, int i, TraceFrame& b, int j) {
-  swap_in(a.ray, i, b.ray, j);
+void swap_frames(TraceFrame& a, int i, TraceFrame& b, int j) {
   match_tables(a, b);
   match_tables(b, a);
   if (!a.tables.empty()) std::swap(a.tables[size_t(i)], b.tables[size_t(j)]);
-  for (const auto& [frame, lane] : {std::pair(&a, size_t(i)), std::pair(&b, size_t(j))})
-    if (frame->ray[lane].table) frame->ray[lane].table = &frame->tables[lane];
   swap_in(a.payload, i, b.payload, j);
   swap_in(a.attributes, i, b.attributes, j);
   swap_in(a.time, i, b.time, j);
+  if (!a.outer && !b.outer) return;
+  for (TraceFrame* frame : {&a, &b})
+    if (!frame->outer) frame->outer = std::make_unique<std::array<EndedRay, kLanes>>();
+  swap_in(*a.outer, i, *b.outer, j);
+  swap_bits(a.kept, i, b.kept, j);
+}
+
+// Lets the lane's rays of all levels that it has opened use the tables of the lane's new warp.
+void take_tables(WarpContext& warp, int lane) {
+  const auto use_table_of = [&](size_t level, rt::CandidateTable*& table) {
+    std::vector<rt::CandidateTable>& tables = warp.frames[level]->tables;
+    if (table && !tables.empty()) table = &tables[size_t(lane)];
+  };
+  size_t level = 0;
+  for (; level + 1 < warp.depth && warp.frames[level + 1]->kept >> lane & 1; ++level)
+    use_table_of(level, (*warp.frames[level + 1]->outer)[size_t(lane)].table);
+  use_table_of(level, warp.ray(lane).table);
+}
+
+void swap_rays(WarpContext& a, int i, WarpContext& b, int j) {
+  if (a.depth == 0) return;
+  for (uint32_t level = 0; level < a.depth; ++level) swap_frames(*a.frames[level], i, *b.frames[level], j);
+  swap_in(*a.traced, i, *b.traced, j);
+  take_tables(a, i);
+  take_tables(b, j);
 }
 
 // Objects are made when first used, so that only one of the warps may have some of them.
@@ -89,9 +112,12 @@ void swap_numbered(Numbered<Object>& a, int i, Numbered<Object>& b, int j, uint3
   }
 }
 
-void swap_specials(isa::Warp& a, int i, isa::Warp& b, int j) {
-  for (size_t s = 0; s < size_t(isa::kNumSpecials); ++s)
-    if (!stays(Special(s))) swap_rows(a.bank[2] + s * kLanes, i, b.bank[2] + s * kLanes, j, 1);
+void swap_specials(isa::Warp& a, int i, isa::Warp& b, int j, const Image& image) {
+  for (size_t s = 0; s < image.special_row.size(); ++s) {
+    const size_t row = image.special_row[s];
+    if (row != Image::kNoRow && !stays(Special(s)))
+      swap_rows(a.bank[2] + row * kLanes, i, b.bank[2] + row * kLanes, j, 1);
+  }
 }
 
 }  // namespace
@@ -110,14 +136,14 @@ LaneMask movable_lanes(const WarpContext& warp) {
   return lanes;
 }
 
-void swap_threads(WarpContext& a, int i, WarpContext& b, int j, uint32_t num_registers) {
-  swap_rows(a.regs.bank[0], i, b.regs.bank[0], j, num_registers);
-  swap_specials(a.regs, i, b.regs, j);
+void swap_threads(WarpContext& a, int i, WarpContext& b, int j, const Image& image) {
+  swap_rows(a.regs.bank[0], i, b.regs.bank[0], j, image.num_registers);
+  swap_specials(a.regs, i, b.regs, j, image);
   for (size_t p = 0; p < a.regs.predicate.size(); ++p)
     swap_bits(a.regs.predicate[p], i, b.regs.predicate[p], j);
   swap_rows(a.local.data(), i, b.local.data(), j, a.local.size() / kLanes);
   swap_in(a.next_time, i, b.next_time, j);
-  for (uint32_t depth = 0; depth < a.depth; ++depth) swap_rays(*a.frames[depth], i, *b.frames[depth], j);
+  swap_rays(a, i, b, j);
   for (uint32_t depth = 0; depth < a.callables; ++depth) {
     swap_in(a.callable_frames[depth]->data, i, b.callable_frames[depth]->data, j);
     swap_in(a.callable_frames[depth]->record, i, b.callable_frames[depth]->record, j);

@@ -20,6 +20,6 @@ LaneMask movable_lanes(const WarpContext& warp);
 // to them: registers, stack, rays and callables under way, hit objects, queries, who they are, and where they
 // wait. What belongs to a lane stays: its number and its masks. The warps may be exchanged, and the lanes
 // movable.
-void swap_threads(WarpContext& a, int i, WarpContext& b, int j, uint32_t num_registers);
+void swap_threads(WarpContext& a, int i, WarpContext& b, int j, const Image& image);
 
 }  // namespace glint::exec

@@ -78,8 +78,9 @@ void fill_launch_specials(const World& world, WarpContext& warp, const Seat& sea
   std::array<uint32_t, 3> block_number = warp.block->id();
   for (size_t axis = 0; blocks && axis < 3; ++axis) block_number[axis] += world.first_id[axis] / size[axis];
   const std::array<uint32_t, 3>& whole = world.whole_size[0] ? world.whole_size : world.launch_size;
+  const auto& row = world.image->special_row;
   const auto set = [&](Special s, size_t lane, uint32_t value) {
-    warp.regs.bank[2][size_t(s) * kLanes + lane] = value;
+    if (row[size_t(s)] != Image::kNoRow) warp.regs.bank[2][row[size_t(s)] * kLanes + lane] = value;
   };
   const auto axis_of = [](Special x, size_t axis) { return Special(size_t(x) + axis); };
   for (size_t lane = 0; lane < size_t(kLanes); ++lane) {
@@ -148,7 +149,7 @@ std::array<uint32_t, 3> thread_id(const World& world, const WarpContext& warp, i
 
 std::array<uint32_t, 3> shader_thread_id(const WarpContext& warp, int lane) {
   std::array<uint32_t, 3> id;
-  for (size_t axis = 0; axis < 3; ++axis)
+  for (size_t axis = 0; axis < 3; ++axis)  // These rows are at the start (Image::special_row).
     id[axis] = warp.regs.bank[2][(size_t(Special::LaunchX) + axis) * kLanes + size_t(lane)];
   return id;
 }
@@ -174,10 +175,10 @@ void start_warp(const World& world, WarpContext& warp, Block& block, uint32_t wa
     warp.regs.bank[0] = warp.own_registers.get();
   }
   std::fill_n(warp.regs.bank[0], registers, 0u);
-  if (!warp.own_specials) warp.own_specials = allocate_rows(size_t(isa::kNumSpecials));
+  if (!warp.own_specials) warp.own_specials = allocate_rows(image.num_special_rows);
   warp.regs.bank[1] = image.constants.get();
   warp.regs.bank[2] = warp.own_specials.get();
-  std::fill_n(warp.regs.bank[2], size_t(isa::kNumSpecials) * kLanes, 0u);
+  std::fill_n(warp.regs.bank[2], size_t{image.num_special_rows} * kLanes, 0u);
   warp.regs.predicate.fill(0);
   warp.local.assign(size_t((world.local_bytes + 3) / 4) * kLanes, 0u);
   warp.warp_index = block.index() * warps_per_block(world) + warp_in_block;
@@ -203,9 +204,10 @@ bool reads_clock(const Image& image) {
   });
 }
 
-void fill_clock(WarpContext& warp, Cycle now, double clock_mhz) {
+void fill_clock(const Image& image, WarpContext& warp, Cycle now, double clock_mhz) {
   const auto set = [&](Special s, uint64_t value) {
-    std::fill_n(warp.regs.bank[2] + size_t(s) * kLanes, kLanes, uint32_t(value));
+    const uint8_t row = image.special_row[size_t(s)];
+    if (row != Image::kNoRow) std::fill_n(warp.regs.bank[2] + row * kLanes, kLanes, uint32_t(value));
   };
   const uint64_t nanoseconds = clock_mhz > 0.0 ? uint64_t(double(now) * 1000.0 / clock_mhz) : 0;
   set(Special::Clock, now);

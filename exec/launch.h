@@ -39,6 +39,6 @@ void start_warp(const World& world, WarpContext& warp, Block& block, uint32_t wa
 bool reads_clock(const Image& image);
 // Writes clock and time for the warp's next instruction. `clock_mhz` turns cycles into time; with 0 the time
 // is 0.
-void fill_clock(WarpContext& warp, Cycle now, double clock_mhz);
+void fill_clock(const Image& image, WarpContext& warp, Cycle now, double clock_mhz);
 
 }  // namespace glint::exec

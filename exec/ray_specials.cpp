@@ -43,10 +43,11 @@ Seen seen_by(Stage stage, const rt::RayState& state) {
 struct LaneSpecials {
   WarpContext& warp;
   size_t lane;
+  const Image& image;
   const isa::SpecialSet& read;  // Shader::specials_used
 
   void set(Special s, uint32_t value) const {
-    if (read[size_t(s)]) warp.regs.bank[2][size_t(s) * kLanes + lane] = value;
+    if (read[size_t(s)]) warp.regs.bank[2][image.special_row[size_t(s)] * size_t(kLanes) + lane] = value;
   }
   void set_float(Special s, float value) const { set(s, std::bit_cast<uint32_t>(value)); }
   void set_floats(Special first, const float* from, int count) const {
@@ -79,9 +80,9 @@ void set_matrices(const LaneSpecials& out, const rt::InstanceLeaf& leaf, const r
 void fill_ray_specials(const World& world, WarpContext& warp, int lane, const Shader& shader) {
   const size_t i = size_t(lane);
   const TraceFrame& frame = warp.frame();
-  const rt::RayState& state = frame.ray[i];
+  const rt::RayState& state = warp.ray(lane);
   const Seen seen = seen_by(shader.stage, state);
-  const LaneSpecials out{warp, i, shader.specials_used};
+  const LaneSpecials out{warp, i, *world.image, shader.specials_used};
   out.set(Special::Payload, frame.payload[i]);
   const uint32_t attributes =
       frame.attributes[i] + (seen.candidate_attributes != state.attribute_slot ? kAttributeBytes : 0);
@@ -120,13 +121,13 @@ void fill_specials(const World& world, WarpContext& warp, LaneMask lanes, const 
     if (warp.callables == 0) return;
     const CallableFrame& frame = *warp.callable_frames[warp.callables - 1];
     for_each_lane(lanes, [&](int lane) {
-      const LaneSpecials out{warp, size_t(lane), shader.specials_used};
+      const LaneSpecials out{warp, size_t(lane), *world.image, shader.specials_used};
       out.set(Special::Payload, frame.data[size_t(lane)]);
       out.set_record(frame.record[size_t(lane)]);
     });
   } else if (warp.depth == 0) {
     for_each_lane(lanes, [&](int lane) {
-      LaneSpecials{warp, size_t(lane), shader.specials_used}.set_record(world.table.raygen);
+      LaneSpecials{warp, size_t(lane), *world.image, shader.specials_used}.set_record(world.table.raygen);
     });
   } else {
     for_each_lane(lanes, [&](int lane) { fill_ray_specials(world, warp, lane, shader); });

@@ -56,7 +56,7 @@ bool Rays::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) 
     case Effect::Trace:
       return trace(warp, inst);
     case Effect::Resume:
-      wait_for(warp, warp.frame().ray.data(), inst.operand[0]);
+      wait_for(warp, warp.traced->data(), inst.operand[0]);
       return true;
     case Effect::Report:
       return report(warp, inst);
@@ -65,7 +65,7 @@ bool Rays::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) 
       return true;
     case Effect::EndTrace:
       candidates_.count(warp);
-      --warp.depth;
+      close_trace(warp);
       refill_specials(world_, warp);
       ++warp.simt.pc;
       return true;
@@ -82,6 +82,9 @@ bool Rays::open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_o
                                     warp.depth + 1, world_.max_trace_depth));
   if (warp.frames.size() == warp.depth) warp.frames.push_back(std::make_unique<TraceFrame>());
   TraceFrame& frame = *warp.frames[warp.depth];
+  if (!warp.traced) warp.traced = std::make_unique<std::array<rt::RayState, kLanes>>();
+  frame.kept = 0;
+  if (warp.depth > 0 && !keep_outer_rays(warp, frame)) return false;
   for_each_lane(warp.regs.exec, [&](int lane) {
     frame.payload[size_t(lane)] = warp.regs.read(inst.operand[payload_operand])[lane];
     frame.attributes[size_t(lane)] = warp.regs.read(inst.operand[payload_operand + 1])[lane];
@@ -91,13 +94,49 @@ bool Rays::open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_o
   return true;
 }
 
+// Puts the rays of the executing lanes aside, because their places are taken by those of a new level. Shaders
+// that run during a walk trace nothing (isa::kTracingStages), so these rays have ended. That saves the host
+// most of a RayState for each level.
+bool Rays::keep_outer_rays(WarpContext& warp, TraceFrame& frame) {
+  LaneMask under_way = 0;
+  for_each_lane(warp.regs.exec, [&](int lane) {
+    const rt::RayStatus status = warp.ray(lane).status;
+    under_way |= LaneMask{status != rt::RayStatus::Done && status != rt::RayStatus::Idle} << lane;
+  });
+  if (under_way) [[unlikely]]
+    return faults_.fail(warp, std::countr_zero(under_way), "traces a ray before its own ray has ended");
+  if (!frame.outer) frame.outer = std::make_unique<std::array<EndedRay, kLanes>>();
+  for_each_lane(warp.regs.exec, [&](int lane) {
+    const rt::RayState& state = warp.ray(lane);
+    (*frame.outer)[size_t(lane)] = {state.ray,    state.committed,      state.table,
+                                    state.status, state.attribute_slot, state.broken};
+  });
+  frame.kept = warp.regs.exec;
+  return true;
+}
+
+void Rays::close_trace(WarpContext& warp) {
+  TraceFrame& frame = warp.frame();
+  for_each_lane(std::exchange(frame.kept, 0), [&](int lane) {
+    const EndedRay& outer = (*frame.outer)[size_t(lane)];
+    rt::RayState& state = warp.ray(lane);
+    state.ray = outer.ray;
+    state.committed = outer.committed;
+    state.table = outer.table;
+    state.status = outer.status;
+    state.attribute_slot = outer.attribute_slot;
+    state.broken = outer.broken;
+  });
+  --warp.depth;
+}
+
 bool Rays::trace(WarpContext& warp, const isa::Inst& inst) {
   const LaneMask exec = warp.regs.exec;
   if (!open_trace(warp, inst, TraceOperand::kPayload)) return false;
   TraceFrame& frame = warp.frame();
   for (LaneMask lanes = exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    rt::RayState& state = frame.ray[size_t(lane)];
+    rt::RayState& state = warp.ray(lane);
     set_ray(warp.regs, inst, lane, state.ray);
     state.ray.flags = with_added_flags(world_, state.ray.flags);
     state.rules.end_at_first_hit = !world_.nearest_first_hit;
@@ -105,11 +144,11 @@ bool Rays::trace(WarpContext& warp, const isa::Inst& inst) {
     state.table = candidates_.table_of(frame, lane);
     if (!rt::begin(state, *world_.memory) &&
         !ray_faults_.let_pass_structure(warp, lane, "traces a ray into", state.ray.structure)) [[unlikely]] {
-      --warp.depth;
+      close_trace(warp);
       return false;
     }
   }
-  wait_for(warp, frame.ray.data(), inst.operand[0]);
+  wait_for(warp, warp.traced->data(), inst.operand[0]);
   return true;
 }
 
@@ -140,7 +179,7 @@ bool Rays::report(WarpContext& warp, const isa::Inst& inst) {
   LaneMask undecided = 0;
   for (LaneMask lanes = exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    rt::RayState& state = warp.frame().ray[size_t(lane)];
+    rt::RayState& state = warp.ray(lane);
     const float t = as_float(warp.regs.read(inst.operand[1])[lane]);
     if (rt::report(state, t, warp.regs.read(inst.operand[2])[lane]) != rt::Report::NeedsAnyHit) continue;
     uint32_t record = 0;
@@ -162,8 +201,7 @@ bool Rays::report(WarpContext& warp, const isa::Inst& inst) {
 void Rays::answer_accepted(WarpContext& warp, isa::Slot answer) {
   const LaneMask exec = warp.regs.exec;
   LaneMask accepted = 0;
-  for_each_lane(
-      exec, [&](int lane) { accepted |= LaneMask{warp.frame().ray[size_t(lane)].report_accepted} << lane; });
+  for_each_lane(exec, [&](int lane) { accepted |= LaneMask{warp.ray(lane).report_accepted} << lane; });
   LaneMask& predicate = warp.regs.predicate[answer];
   predicate = (predicate & ~exec) | accepted;
   ++warp.simt.pc;

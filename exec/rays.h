@@ -18,6 +18,8 @@ class Rays {
   // Opens a level with the payloads and attributes of its lanes. No ray travels yet. `payload_operand` is the
   // operand of the payload, which that of the attributes follows. Returns false after a fault.
   bool open_trace(WarpContext& warp, const isa::Inst& inst, size_t payload_operand);
+  // Ends the innermost level, and gives its lanes back their rays of the level below.
+  static void close_trace(WarpContext& warp);
   // Lets the executing lanes wait for their `rays`, one per lane. `answer` is the predicate that they will
   // get.
   static void wait_for(WarpContext& warp, rt::RayState* rays, isa::Slot answer);
@@ -27,6 +29,7 @@ class Rays {
 
  private:
   bool trace(WarpContext& warp, const isa::Inst& inst);
+  bool keep_outer_rays(WarpContext& warp, TraceFrame& frame);
   bool report(WarpContext& warp, const isa::Inst& inst);
   static void answer_accepted(WarpContext& warp, isa::Slot answer);
 

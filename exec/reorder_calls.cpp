@@ -67,7 +67,7 @@ void ReorderCalls::read_hints(const WarpContext& warp, const isa::Inst& inst, si
 
 void ReorderCalls::read_trace(const WarpContext& warp) {
   for_each_lane(warp.regs.exec, [&](int lane) {
-    const rt::RayState& state = warp.frame().ray[size_t(lane)];
+    const rt::RayState& state = warp.ray(lane);
     ReorderCall& call = calls_[size_t(lane)];
     if (state.status == rt::RayStatus::Idle) {  // of a hit object that is empty
       call.found = Found::Nothing;

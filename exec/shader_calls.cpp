@@ -82,7 +82,7 @@ bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint
   for (LaneMask lanes = warp.regs.exec; lanes; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     const size_t i = size_t(lane);
-    rt::RayState& state = warp.frame().ray[i];
+    rt::RayState& state = warp.ray(lane);
     if (state.broken && !ray_faults_.let_pass_broken(warp, lane, state)) [[unlikely]]
       return false;
     if (state.status == RayStatus::Idle) {  // The hit object is empty.
@@ -161,7 +161,7 @@ void ShaderCalls::finish_shader(WarpContext& warp, Effect effect) {
   const isa::Stage stage = world_.image->shaders[world_.image->shader_of[warp.simt.pc]].stage;
   for_each_lane(warp.regs.exec, [&](int lane) {
     if (warp.depth == 0) return;
-    rt::RayState& state = warp.frame().ray[size_t(lane)];
+    rt::RayState& state = warp.ray(lane);
     if (effect == Effect::Ignore)
       rt::ignore_candidate(state);
     else if (effect == Effect::Terminate)

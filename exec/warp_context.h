@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -14,12 +15,24 @@
 
 namespace glint::exec {
 
-// Holds the rays of one nesting level of rt.trace.
+// Holds what shaders still see of a ray whose walk is over, while its thread traces another one.
+struct EndedRay {
+  rt::Ray ray;
+  rt::Hit committed;
+  rt::CandidateTable* table = nullptr;
+  rt::RayStatus status = rt::RayStatus::Idle;
+  bool attribute_slot = false, broken = false;
+};
+
+// Holds what one nesting level of rt.trace has besides the rays that are under way (WarpContext::traced).
 struct TraceFrame {
-  std::array<rt::RayState, kLanes> ray;
   std::array<uint32_t, kLanes> payload{}, attributes{};  // local addresses
   std::array<uint32_t, kLanes> time{};                   // bits of a float
   std::vector<rt::CandidateTable> tables;                // one per lane, if the any-hit mode has tables
+  // These are the rays of the level below of the lanes in `kept`. The level gives them back when it ends.
+  // They are allocated when first needed.
+  std::unique_ptr<std::array<EndedRay, kLanes>> outer;
+  LaneMask kept = 0;
 };
 
 // Holds the callables of one nesting level of call.sbt.callable.
@@ -67,10 +80,12 @@ struct WarpContext {
   // This is the time of the next ray. Model: nothing moves; shaders read the value back.
   std::array<uint32_t, kLanes> next_time{};
   std::vector<std::unique_ptr<TraceFrame>> frames;  // allocated when first needed, then kept
+  // This is each lane's ray of the innermost rt.trace that it has opened. It is allocated like `frames`.
+  std::unique_ptr<std::array<rt::RayState, kLanes>> traced;
   Numbered<rt::RayState> queries;
   std::vector<uint32_t> local;   // [word][lane]
   LaneMask ray_lanes = 0;        // lanes that it handed over
-  rt::RayState* rays = nullptr;  // one per lane, in `frames` or `queries`
+  rt::RayState* rays = nullptr;  // one per lane, in `traced` or `queries`
   isa::Slot ray_answer = 0;      // predicate that receives the answer
   LaneMask walking = 0;          // the lanes of ray_lanes whose rays World::traversal walks
 
@@ -85,6 +100,9 @@ struct WarpContext {
 
   TraceFrame& frame() { return *frames[depth - 1]; }
   const TraceFrame& frame() const { return *frames[depth - 1]; }
+  // Returns the ray of a lane that has opened the innermost level.
+  rt::RayState& ray(int lane) { return (*traced)[size_t(lane)]; }
+  const rt::RayState& ray(int lane) const { return (*traced)[size_t(lane)]; }
 };
 
 }  // namespace glint::exec

@@ -150,8 +150,9 @@ TEST_CASE(
   WarpContext warp;
   executor.start(warp, 0);
   warp.frames.push_back(std::make_unique<TraceFrame>());
+  warp.traced = std::make_unique<std::array<rt::RayState, kLanes>>();
   warp.depth = 1;
-  rt::RayState& state = warp.frame().ray[0];
+  rt::RayState& state = warp.ray(0);
   state.status = rt::RayStatus::NeedsAnyHit;
   state.candidate.t = 1.0f;
   // This is the state that call.sbt.candidate leaves: the caller waits at its second instruction, and lane 0
@@ -168,6 +169,20 @@ TEST_CASE(
   CHECK(state.status != rt::RayStatus::NeedsAnyHit);
   CHECK(warp.simt.active == kAllLanes);
   CHECK(warp.simt.pc == 1);
+}
+
+TEST_CASE("a warp has rows for the specials that its program reads, and for the place of its threads") {
+  const std::vector<isa::Program> programs{isa::parse(
+      ".program \"hit\"\n.stage any_hit\n.registers 8\n\n    mov.b32 %r1, %hit.t;\n    ret;\n", "hit")};
+  const Image image = link(programs);
+  const auto row = [&](isa::Special special) { return image.special_row[size_t(special)]; };
+
+  CHECK(row(isa::Special::LaneId) == 0);
+  CHECK(row(isa::Special::LaunchZ) == 3);
+  CHECK(row(isa::Special::HitT) == 4);
+  CHECK(row(isa::Special::Payload) == Image::kNoRow);
+  CHECK(image.num_special_rows == 5);
+  CHECK(image.code[0].inst.operand[1] == isa::kSpecialBank + 4);
 }
 
 }  // namespace glint::exec
