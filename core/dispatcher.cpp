@@ -8,11 +8,13 @@
 
 namespace glint::core {
 
-Dispatcher::Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores)
+Dispatcher::Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores,
+                       std::span<const uint32_t> chosen)
     : launch_latency_(params.launch_latency),
       warp_launch_latency_(params.warp_launch_latency),
       interval_parts_(Cycle(std::lround(params.grid_interval * double(kParts)))),
-      num_blocks_(num_blocks),
+      chosen_(chosen),
+      num_blocks_(chosen.empty() ? num_blocks : uint32_t(chosen.size())),
       cores_(std::move(cores)) {
 }
 
@@ -28,7 +30,8 @@ void Dispatcher::dispatch(Cycle now) {
     any = false;
     for (CoreCell* core : cores_) {
       if (done() || !core->has_room()) continue;
-      core->launch(now, next_++, take_start(ready));
+      core->launch(now, chosen_.empty() ? next_ : chosen_[next_], take_start(ready));
+      ++next_;
       any = true;
       if (done())
         for (CoreCell* each : cores_) each->end_of_blocks();

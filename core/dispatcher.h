@@ -1,7 +1,8 @@
-// Hands the blocks of a launch to the cores: in launch order, to whichever core has room.
+// Hands the blocks of a launch, or some of them, to the cores: in order, to whichever core has room.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -17,7 +18,10 @@ namespace glint::core {
 // starts them all.
 class Dispatcher {
  public:
-  Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores);
+  // `chosen` are the blocks that run, in their order; when it is empty, all `num_blocks` run. What it refers
+  // to outlives the dispatcher.
+  Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores,
+             std::span<const uint32_t> chosen = {});
   // Fills the cores at `now`, the start of a window.
   void dispatch(Cycle now);
   bool done() const { return next_ == num_blocks_; }
@@ -29,6 +33,7 @@ class Dispatcher {
   Cycle take_start(Cycle ready);
 
   const Cycle launch_latency_, warp_launch_latency_, interval_parts_;
+  const std::span<const uint32_t> chosen_;
   const uint32_t num_blocks_;
   std::vector<CoreCell*> cores_;
   uint32_t next_ = 0;

@@ -43,6 +43,11 @@ MemoryContents MemorySystem::take_contents() {
   return out;
 }
 
+void MemorySystem::warm(Address line, uint8_t sectors) {
+  const uint32_t slice = map_.slice(line);
+  partitions_[map_.partition_of(slice)]->warm(slice, line, sectors);
+}
+
 void MemorySystem::put_contents(MemoryContents&& contents) {
   for (size_t i = 0; i < partitions_.size(); ++i) partitions_[i]->put_contents(std::move(contents[i]));
 }

@@ -44,6 +44,9 @@ class MemorySystem {
   // next launch before it begins. Both have the same parameters.
   MemoryContents take_contents();
   void put_contents(MemoryContents&& contents);
+  // Lets the L2 hold sectors of a line (a physical, line-aligned address) as if they had just been read. It
+  // takes no time and counts nothing. Model: what makes way is not written back.
+  void warm(Address line, uint8_t sectors);
 
   // Counts the cycles up to the end of the run under their reasons. It is called once, before statistics are
   // read.

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/block_runner.h"
 
+#include <cstddef>
+
 #include "base/num_lanes.h"
-#include "rtunit/traversal/traversal.h"
 
 namespace glint::pipeline {
 
@@ -36,12 +37,30 @@ uint64_t WorkCounts::instructions() const {
   return sum;
 }
 
-void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
+namespace {
+
+// Does what rt::run() does, node by node.
+void run_told(rt::RayState& state, const mem::AddressSpace& memory, const BlockRunner::NodeListener& nodes) {
+  while (state.status == rt::RayStatus::Traversing) {
+    const rt::Fetch fetch = rt::next_fetch(state);
+    const std::byte* bytes = memory.find(fetch.address, fetch.bytes);
+    if (!bytes) return rt::break_off(state);
+    nodes(fetch);
+    rt::step(state, bytes);
+  }
+}
+
+}  // namespace
+
+void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts,
+                 const BlockRunner::NodeListener& listener) {
+  const mem::AddressSpace& memory = *executor.world().memory;
   for_each_lane(warp.ray_lanes, [&](int lane) {
     rt::RayState& state = warp.rays[lane];
     const auto nodes = state.nodes_visited, boxes = state.box_tests, triangles = state.triangle_tests;
     if (nodes == 0) ++counts.rays;  // The ray is handed over for the first time, so it is not a resumed one.
-    if (state.status == rt::RayStatus::Traversing) rt::run(state, *executor.world().memory);
+    if (state.status == rt::RayStatus::Traversing)
+      listener ? run_told(state, memory, listener) : rt::run(state, memory);
     counts.nodes += state.nodes_visited - nodes;
     counts.box_tests += state.box_tests - boxes;
     counts.triangle_tests += state.triangle_tests - triangles;
@@ -50,7 +69,8 @@ void answer_rays(Executor& executor, WarpContext& warp, RayCounts& counts) {
 }
 
 bool BlockRunner::run(Executor& executor, uint32_t index, WorkCounts& counts,
-                      const std::function<bool()>& is_over, core::CostRecorder* costs) {
+                      const std::function<bool()>& is_over, core::CostRecorder* costs,
+                      const NodeListener& nodes) {
   instructions_ = 0;
   warps_.resize(executor.warps_per_block());
   executor.start(block_, index);
@@ -64,7 +84,7 @@ bool BlockRunner::run(Executor& executor, uint32_t index, WorkCounts& counts,
     for (WarpContext& warp : warps_) {
       if (!(block_.live() >> warp.warp_in_block & 1)) continue;
       const uint64_t before = warp.instructions;
-      run_warp(executor, warp, counts, costs);
+      run_warp(executor, warp, counts, costs, nodes);
       instructions_ += warp.instructions - before;
       if (is_over()) return false;
     }
@@ -72,7 +92,7 @@ bool BlockRunner::run(Executor& executor, uint32_t index, WorkCounts& counts,
 }
 
 void BlockRunner::run_warp(Executor& executor, WarpContext& warp, WorkCounts& counts,
-                           core::CostRecorder* costs) {
+                           core::CostRecorder* costs, const NodeListener& nodes) {
   const uint64_t end = warp.instructions + kQuantum;
   for (bool finished = false; !finished && !warp.waiting_at_barrier && warp.instructions < end;) {
     const exec::Issued issued = executor.execute(warp, 0);
@@ -86,7 +106,7 @@ void BlockRunner::run_warp(Executor& executor, WarpContext& warp, WorkCounts& co
       const LaneMask lanes = warp.ray_lanes;
       const rt::RayState* rays = warp.rays;
       if (costs) costs->start_rays(warp.warp_in_block, lanes, rays);
-      answer_rays(executor, warp, counts.rays);
+      answer_rays(executor, warp, counts.rays, nodes);
       if (costs) costs->end_rays(warp.warp_in_block, lanes, rays);
     }
     if (finished && costs) costs->end_warp(0, warp.warp_in_block);

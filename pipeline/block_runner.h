@@ -11,6 +11,7 @@
 #include "exec/endless_loops.h"
 #include "exec/executor.h"
 #include "pipeline/render.h"
+#include "rtunit/traversal/traversal.h"
 
 namespace glint::pipeline {
 
@@ -30,15 +31,18 @@ class BlockRunner {
     exec::Fault fault;
   };
 
+  // Hears of every node that a ray visits, before it does.
+  using NodeListener = std::function<void(const rt::Fetch&)>;
+
   // `world` and `endless` outlive the runner. A warp that executes more than `instruction_budget`
   // instructions fails.
   BlockRunner(const exec::World& world, const exec::EndlessLoops& endless, uint64_t instruction_budget)
       : world_(world), endless_(endless), budget_(instruction_budget) {}
 
   // Runs block `index` to its end. `is_over()` is asked between turns of warps. When it answers true, the
-  // block is left as it is, and the function returns false. `costs` may be null.
+  // block is left as it is, and the function returns false. `costs` may be null, and `nodes` empty.
   bool run(exec::Executor& executor, uint32_t index, WorkCounts& counts, const std::function<bool()>& is_over,
-           core::CostRecorder* costs = nullptr);
+           core::CostRecorder* costs = nullptr, const NodeListener& nodes = {});
 
   uint64_t instructions() const { return instructions_; }  // of the block that run() ran last
   // Returns where most warps of that block are.
@@ -46,7 +50,7 @@ class BlockRunner {
 
  private:
   void run_warp(exec::Executor& executor, exec::WarpContext& warp, WorkCounts& counts,
-                core::CostRecorder* costs);
+                core::CostRecorder* costs, const NodeListener& nodes);
 
   const exec::World& world_;
   const exec::EndlessLoops& endless_;
@@ -56,7 +60,9 @@ class BlockRunner {
   std::vector<exec::WarpContext> warps_;
 };
 
-// Traverses the rays that `warp` waits for and answers them. Adds what the traversal did to `counts`.
-void answer_rays(exec::Executor& executor, exec::WarpContext& warp, RayCounts& counts);
+// Traverses the rays that `warp` waits for and answers them. Adds what the traversal did to `counts`, and
+// tells `listener`, unless it is empty.
+void answer_rays(exec::Executor& executor, exec::WarpContext& warp, RayCounts& counts,
+                 const BlockRunner::NodeListener& listener = {});
 
 }  // namespace glint::pipeline

@@ -41,6 +41,11 @@ RenderResult launch_scene(Device& device, SceneWorld& scene, const RenderJob& jo
   scene.world.on_fault = job.on_fault;
   RenderResult result =
       device.run(scene.world, {job.timing, job.no_skip, job.threads, caches, job.observe}, job.watch);
+  read_frame(scene, job, result);
+  return result;
+}
+
+void read_frame(const SceneWorld& scene, const RenderJob& job, RenderResult& result) {
   result.width = job.frame.width;
   result.height = job.frame.height;
   result.structures = scene.structures;
@@ -49,7 +54,6 @@ RenderResult launch_scene(Device& device, SceneWorld& scene, const RenderJob& jo
   result.picture = scene.world.images[SceneWorld::kPicture];
   result.picture.base = result.picture.address_of({scene.world.first_id[0], scene.world.first_id[1]});
   result.accumulation = scene.read_image(SceneWorld::kAccumulation);
-  return result;
 }
 
 RenderResult render(const RenderJob& job) {

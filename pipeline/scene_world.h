@@ -150,4 +150,7 @@ class SceneWorld {
   exec::Image image_;
 };
 
+// Adds the pictures that a launch of the scene has left, and what is known of the scene, to its result.
+void read_frame(const SceneWorld& scene, const RenderJob& job, RenderResult& result);
+
 }  // namespace glint::pipeline

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <span>
 #include <utility>
 
 #include "base/check.h"
@@ -119,13 +120,14 @@ void Reserves::give_back() {
   all_.clear();
 }
 
-Cycle TimingMachine::run(const LaunchWatch& watch) {
+Cycle TimingMachine::run(const LaunchWatch& watch, LaunchPart* part) {
   std::vector<core::CoreCell*> cores;
   for (auto& core : cores_) cores.push_back(core.get());
   const exec::Executor executor(world_);
-  core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores);
+  const std::span<const uint32_t> blocks = part ? part->blocks() : std::span<const uint32_t>{};
+  core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores, blocks);
   const exec::Fault* fault = nullptr;
-  progress_.num_warps = executor.num_warps();
+  progress_.num_warps = part ? blocks.size() * executor.warps_per_block() : executor.num_warps();
   const auto note_progress = [&](Cycle now) {
     progress_.ended_warps = uint64_t{dispatcher.num_dispatched()} * executor.warps_per_block();
     for (const auto& core : cores_) progress_.ended_warps -= core->num_resident();
@@ -156,6 +158,7 @@ Cycle TimingMachine::run(const LaunchWatch& watch) {
             return EngineLoop::Next::Stop;
           }
         }
+        if (part) part->before_start(now, dispatcher.num_dispatched());
         dispatcher.dispatch(now);
         if (now >= next_look) {
           next_look = now + kLookPeriod;

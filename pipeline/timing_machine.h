@@ -14,6 +14,7 @@
 #include "engine/engine_loop.h"
 #include "exec/endless_loops.h"
 #include "memsys/memory_system.h"
+#include "pipeline/launch_part.h"
 #include "pipeline/progress_watch.h"
 #include "pipeline/render.h"
 #include "rtunit/unit/rt_unit.h"
@@ -54,7 +55,8 @@ class TimingMachine {
 
   // Runs the launch to its end, or until the watch ends it, and returns its cycles. Throws as render() does.
   // The memory that it has reserved is free again afterwards.
-  Cycle run(const LaunchWatch& watch);
+  // With `part`, only the blocks run that it names.
+  Cycle run(const LaunchWatch& watch, LaunchPart* part = nullptr);
   LaunchEnd end() const { return end_; }                        // why run() has ended
   const LaunchProgress& progress() const { return progress_; }  // how far it came, if the watch has ended it
 

@@ -107,6 +107,13 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
   });
 }
 
+void L2Slice::warm(Address line, uint8_t sectors) {
+  const uint32_t slot = tags_.find(line);
+  if (slot != kNone) tags_.touch(slot);
+  (slot == kNone ? tags_.insert(line) : tags_.line(slot)).valid |= sectors;
+  seen_.insert_if_new(line);
+}
+
 void L2Slice::serve(Cycle now) {
   blocked_ = SliceCycle::Count;
   if (head_received() > now) return;

@@ -99,6 +99,8 @@ class L2Slice {
     tags_ = std::move(contents.tags), words_ = std::move(contents.words), seen_ = std::move(contents.seen);
   }
 
+  void warm(Address line, uint8_t sectors);  // MemorySystem::warm()
+
   Ring<ToDram>& to_dram() { return to_dram_; }
   const Ring<ToDram>& to_dram() const { return to_dram_; }
   Address local(Address address) const { return map_.local(address, index_); }

@@ -20,12 +20,12 @@ from .images import read_image
 from .labelling import labels
 from .launch import find_glint, run, sweep
 from .derived import Metric, Metrics, metrics
-from .run_directory import Facts, Run
+from .run_directory import Estimate, Facts, Run
 from .statistics import Histogram, Stat, Stats
 from .table import Table
 from .trace import Slice, Trace
 
-__all__ = ["Bench", "Change", "Characterization", "CommandFailed", "Facts", "GlintError", "Histogram", "IncompleteRun", "Metric", "Metrics", "MissingFile", "MissingPackage",
+__all__ = ["Bench", "Change", "Characterization", "CommandFailed", "Estimate", "Facts", "GlintError", "Histogram", "IncompleteRun", "Metric", "Metrics", "MissingFile", "MissingPackage",
            "Run", "Runs", "SchemaError", "Slice", "Stat", "Stats", "Sweep", "Table", "Trace", "UnknownName", "compare", "find_glint", "labels",
            "metrics", "plot", "read_image", "run", "speedup", "sweep"]
 

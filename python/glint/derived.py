@@ -35,7 +35,7 @@ def metrics() -> dict[str, Metric]:
 
 
 class Metrics(Mapping[str, "float | None"]):
-    """Holds the metrics of one run by name. A metric is None when its divisor is 0, or when a functional run does not count it."""
+    """Holds the metrics of one run by name. A metric is None when its divisor is 0, or when a functional or a sampled run does not count it."""
 
     def __init__(self, run: Any):
         self._run = run
@@ -45,9 +45,14 @@ class Metrics(Mapping[str, "float | None"]):
         if name not in metrics():
             raise UnknownName(f"there is no metric '{name}'{near(name, metrics())} 'glint list metrics' shows all metrics")
         if name not in self._known:
-            formula = metrics()[name].formula
-            self._known[name] = evaluate(formula, self._run) if formula else None
+            self._known[name] = self._value(metrics()[name].formula, name)
         return self._known[name]
+
+    def _value(self, formula: str, name: str) -> float | None:
+        # The counts of a sampled run are those of a part of the launch, so only its estimate is a metric.
+        if "sample.share" in self._run.info:
+            return self._run.stats["gpu.sample.cycles"] if name == "cycles" else None
+        return evaluate(formula, self._run) if formula else None
 
     def __iter__(self) -> Iterator[str]:
         return iter(metrics())

@@ -3,6 +3,7 @@
 """`Run(directory)` has the statistics, metrics, configuration, picture, time series, profile and maps of a run."""
 from __future__ import annotations
 
+import dataclasses
 import functools
 import pathlib
 import tomllib
@@ -21,7 +22,16 @@ from .trace import Trace
 
 SCHEMA = 1  # of run.json, as report/files/run_directory.cpp writes it
 SHADERS = ("pt", "sh", "ao")  # shaders of scenes; pipelines and kernels list their own files
+_SAMPLE = "gpu.sample."  # path of the estimates of a sampled run
 _LAST_TABLE = "compiler"  # of config.toml; a file without it was cut short
+
+
+@dataclasses.dataclass(frozen=True)
+class Estimate:
+    """Holds an estimate of a sampled run with its 95 % interval."""
+    value: float
+    low: float
+    high: float
 
 
 class Facts(dict[str, Any]):
@@ -120,8 +130,21 @@ class Run:
         return Facts(flat(tree))
 
     @property
+    def is_sampled(self) -> bool:
+        """Returns whether only a sample of the launch was run (docs/sampling.md)."""
+        return "sample.share" in self.info
+
+    @functools.cached_property
+    def estimates(self) -> dict[str, Estimate]:
+        """Returns what a sampled run estimates of its whole launch, by name; nothing for a whole run."""
+        names = [path for path in self.stats if path.startswith(_SAMPLE) and f"{path}_low" in self.stats]
+        return {path[len(_SAMPLE):]: Estimate(*(self.stats[path + end] for end in ("", "_low", "_high"))) for path in names}
+
+    @property
     def cycles(self) -> int:
-        """Returns the time of the launch in core clocks. Raises UnknownName for a functional run, which has none."""
+        """Returns the time of the launch in core clocks, which a sampled run estimates. Raises UnknownName for a functional run, which has none."""
+        if self.is_sampled:
+            return round(self.estimates["cycles"].value)
         if self.info["mode"] != "timing":
             raise UnknownName(f"{self.directory}: a functional run has no cycles: run it with --mode timing")
         return self.stats["gpu.cycles"]
@@ -134,6 +157,8 @@ class Run:
     @property
     def ipc(self) -> float:
         """Returns warp instructions per cycle of the whole GPU, as `glint run` prints it. The metric `thread_ipc` counts lanes."""
+        if self.is_sampled:
+            return self.estimates["ipc"].value
         return self.stats.sum("gpu.core[*].instructions") / self.cycles if self.cycles else 0.0
 
     @functools.cached_property

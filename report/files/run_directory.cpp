@@ -32,9 +32,9 @@ nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
   return nlohmann::ordered_json::json_pointer("/" + key);
 }
 
-constexpr const char* kResults[] = {"image.png",   "image.pfm",   "image.exr",
-                                    "printf.txt",  "profile.csv", "profile.folded",
-                                    "source.json", "series.csv",  "trace.json.gz"};
+constexpr const char* kResults[] = {"image.png",     "image.pfm",      "image.exr",   "printf.txt",
+                                    "profile.csv",   "profile.folded", "source.json", "series.csv",
+                                    "trace.json.gz", "sample.csv"};
 constexpr const char* kFolder = "heat";  // the only folder of a run
 constexpr const char* kUnfinished = "the run has not ended: it still runs, or it was killed";
 
@@ -103,6 +103,11 @@ std::vector<std::string> maps_before(const std::string& path) {
   return listed_names(path, "maps", [](const nlohmann::json& item) {
     return item.is_object() && item.contains("name") ? item["name"] : nlohmann::json();
   });
+}
+
+nlohmann::ordered_json json_of(const SampleInfo& sample) {
+  return {{"share", sample.share},   {"seed", sample.seed},          {"scale", sample.scale},
+          {"blocks", sample.blocks}, {"timed", sample.timed_blocks}, {"warm", sample.warm_blocks}};
 }
 
 nlohmann::ordered_json json_of(const SequenceInfo& sequence) {
@@ -340,6 +345,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   written_.erase("run.json");  // A file cannot hold its own sum.
   json["files"] = json_of(written_);
   if (info.part) json["partial"] = json_of(*info.part);
+  if (info.sample) json["sample"] = json_of(*info.sample);
   json["exit"] = info.exit;
   if (!info.message.empty()) json["message"] = info.message;
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;

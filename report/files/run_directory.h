@@ -43,6 +43,14 @@ struct PartInfo {
   std::string where;  // the line and loops where most running warps were; empty when none ran
 };
 
+// Says that only a sample of the launch's blocks was run (docs/sampling.md).
+struct SampleInfo {
+  double share = 0;  // of the blocks that were timed, as it was asked for
+  uint64_t seed = 0;
+  uint32_t scale = 1;                                      // 1/scale of the machine ran them
+  uint64_t blocks = 0, timed_blocks = 0, warm_blocks = 0;  // of the launch, timed, and run functionally
+};
+
 // Names a file that holds an image or a buffer of a pipeline, or a buffer of a kernel.
 struct OutputInfo {
   std::string file, name;
@@ -98,6 +106,7 @@ struct RunInfo {
   std::optional<MomentInfo> moment;      // of a frame
   bool compact = false;                  // The statistics are totals over units (stat_totals()).
   std::optional<PartInfo> part;
+  std::optional<SampleInfo> sample;
   int exit = 0;
   std::string message;  // why exit is not 0
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "report/files/csv_field.h"
+#include "report/metrics/compare_samples.h"
 #include "report/metrics/formula.h"
 #include "report/terminal/table.h"
 
@@ -25,14 +26,24 @@ std::string cell(std::optional<double> value) {
   return value ? fmt::format("{}", *value) : "";
 }
 
+// Returns what a sampled run estimates of a metric.
+std::optional<double> estimate_of(const RunRecord& run, std::string_view metric) {
+  if (metric != "cycles") return std::nullopt;
+  const std::vector<double> values = run.values("gpu.sample.cycles");
+  return values.empty() ? std::nullopt : std::optional(values[0]);
+}
+
 }  // namespace
 
 std::vector<MetricValue> metrics_of(const RunRecord& run) {
   std::vector<MetricValue> out;
+  // The counts of a sampled run are those of a part of the launch, so only its estimate has a metric.
+  const bool sampled = is_sampled(run);
   for (const MetricGroup& group : metric_groups())
     for (const Metric& metric : group.metrics)
-      out.push_back(
-          {&metric, metric.formula.empty() ? std::nullopt : evaluate(std::string(metric.formula), run)});
+      out.push_back({&metric, sampled                  ? estimate_of(run, metric.name)
+                              : metric.formula.empty() ? std::nullopt
+                                                       : evaluate(std::string(metric.formula), run)});
   return out;
 }
 

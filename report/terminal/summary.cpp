@@ -110,17 +110,40 @@ std::string speed(const Summary& s) {
   return table(rows, "<<", " ");
 }
 
+std::string quantity(double value, const std::string& unit) {
+  return unit == "fraction" ? percent(value)
+         : value < 1000     ? fmt::format("{:.3f}", value)
+                            : with_thousands(uint64_t(value + 0.5));
+}
+
+std::string estimates(const SampleSummary& s) {
+  Rows rows{{"estimate", "value", "95 % interval", ""}};
+  for (const SampleSummary::Row& row : s.rows)
+    rows.push_back({row.name, quantity(row.value, row.unit),
+                    fmt::format("{} to {}", quantity(row.low, row.unit), quantity(row.high, row.unit)),
+                    row.unit == "fraction" ? "" : row.unit});
+  return fmt::format(" a sample of {:g} %, seed {}: {} of {} blocks were timed on 1/{} of the machine\n",
+                     100 * s.share, s.seed, with_thousands(s.timed), with_thousands(s.blocks), s.scale) +
+         table(rows, "<><<", " ");
+}
+
+// Returns the sections about what a launch did.
+std::string counts(const Summary& s, const Terminal& terminal) {
+  std::string out = "\n" + execution(s);
+  if (!s.mix.empty()) out += "\n" + heading("Instruction mix", terminal) + "\n" + mix(s, terminal);
+  if (s.timing)
+    out += "\n" + heading("Memory and RT unit", terminal) + "\n" + peaks(*s.timing) +
+           machine(*s.timing, terminal);
+  return out + "\n" + heading("Rays", terminal) + "\n" + rays(s);
+}
+
 }  // namespace
 
 std::string format_summary(const Summary& s, const Terminal& terminal) {
   std::string out = heading(s.title, terminal) + "\n";
   if (!s.note.empty()) out += " " + s.note + "\n";
-  out += "\n" + execution(s);
-  if (!s.mix.empty()) out += "\n" + heading("Instruction mix", terminal) + "\n" + mix(s, terminal);
-  if (s.timing)
-    out += "\n" + heading("Memory and RT unit", terminal) + "\n" + peaks(*s.timing) +
-           machine(*s.timing, terminal);
-  out += "\n" + heading("Rays", terminal) + "\n" + rays(s);
+  out += s.sample ? "\n" + heading("Estimates of the whole launch", terminal) + "\n" + estimates(*s.sample)
+                  : counts(s, terminal);
   out += "\n" + heading("Simulation", terminal) + "\n" + speed(s);
   for (const std::string& file : s.files) out += " " + file + "\n";
   return out;

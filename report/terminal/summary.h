@@ -39,6 +39,19 @@ struct TimingSummary {
   std::optional<double> rt_efficiency;     // active rays / lanes of resident warps
 };
 
+// Holds what a sampled run estimates of its whole launch.
+struct SampleSummary {
+  double share = 0;
+  uint64_t seed = 0;
+  uint32_t scale = 1;              // 1/scale of the machine ran the sample
+  uint64_t timed = 0, blocks = 0;  // blocks that were timed, and of the launch
+  struct Row {
+    std::string name, unit;
+    double value = 0, low = 0, high = 0;  // with a 95 % interval
+  };
+  std::vector<Row> rows;  // none when the launch was ended early
+};
+
 struct Summary {
   std::string title;               // such as "WKND pt 128x128 2 spp on mobile"
   std::string note;                // what differs from the original scene; "" when nothing does
@@ -51,6 +64,7 @@ struct Summary {
   uint32_t bvh_depth = 0;    // levels of the deepest path, top and bottom structure together
   double wall_seconds = 0;
   std::optional<TimingSummary> timing;  // absent for a functional run
+  std::optional<SampleSummary> sample;  // is shown in place of the counts
 };
 
 std::string format_summary(const Summary& summary, const Terminal& terminal);

@@ -31,7 +31,8 @@ def reduced(words):
     if "--help" in rest:
         return words
     if command in ("run", "export") and is_scene(rest):
-        rest = [workplace.SLOW_SCENES.get(word, word) for word in rest]
+        # A sample needs a larger frame than this one, which is run whole instead.
+        rest = [workplace.SLOW_SCENES.get(word, word) for word in without(rest, "--sample-pixels")]
     elif command == "bench":
         at = next((i for i, word in enumerate(rest) if word.startswith("-")), len(rest))
         names, options = rest[:at], rest[at:]

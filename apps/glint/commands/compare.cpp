@@ -16,6 +16,7 @@
 #include "base/diagnostics.h"
 #include "report/files/file_list.h"
 #include "report/metrics/compare_causes.h"
+#include "report/metrics/compare_samples.h"
 
 namespace glint::app {
 namespace {
@@ -30,6 +31,16 @@ std::string config_of(const std::string& directory) {
   return report::ListedFiles::of_run(directory).need("config.toml");
 }
 
+// Returns how the estimates of two sampled runs differ.
+std::string samples_text(const report::RunRecord& was, const report::RunRecord& is, const std::string& before,
+                         const std::string& after) {
+  const auto batches_of = [](const std::string& directory) {
+    return report::ListedFiles::of_run(directory).need("sample.csv");
+  };
+  return report::sample_changes_text(report::sample_changes(was, is, batches_of(before), batches_of(after)),
+                                     report::is_paired(was, is));
+}
+
 // Compares two runs. `name` is the workload's of a bench, or "".
 Exit compare_runs(const std::string& name, const std::string& before, const std::string& after,
                   const std::vector<report::Condition>& conditions, bool all) {
@@ -40,10 +51,14 @@ Exit compare_runs(const std::string& name, const std::string& before, const std:
     fmt::print(stderr,
                "warning: the runs did different work, so their numbers say little of each other: {}\n",
                different);
-  const std::string title = name.empty() ? "" : fmt::format("== {}\n", name);
-  write_output("", title + report::changes_text(changes, all) + report::uncompared_text(was, is) +
-                       report::changed_keys_text(config_of(before), config_of(after)) +
-                       report::changed_stalls_text(was, is, all) + (name.empty() ? "" : "\n"));
+  const std::string title = name.empty() ? "" : fmt::format("== {}\n", name),
+                    keys = report::changed_keys_text(config_of(before), config_of(after));
+  const bool sampled = report::is_sampled(was) && report::is_sampled(is);
+  write_output("", title +
+                       (sampled ? samples_text(was, is, before, after) + keys
+                                : report::changes_text(changes, all) + report::uncompared_text(was, is) +
+                                      keys + report::changed_stalls_text(was, is, all)) +
+                       (name.empty() ? "" : "\n"));
   Exit exit = Exit::Ok;
   for (const report::Condition& condition : conditions) {
     if (!report::holds(condition, changes)) continue;

@@ -44,9 +44,23 @@ void check_scene_options(const RunOptions& options) {
                                         : "what a pipeline, a kernel or a script renders stands in its file");
 }
 
+// Refuses to sample what is not a scene.
+void check_sampled(const RunOptions& options) {
+  check_sample(options.launch);
+  const std::string& what = options.scene.scene;
+  if (options.launch.sample.wanted() && options.scene.sequence.is_wanted())
+    throw UserError({}, "--sample-pixels cannot be used with --frames",
+                    "sample one frame, or run the sequence whole");
+  if (options.launch.sample.wanted() && (names_script(what) || names_pipeline(what) || names_kernel(what) ||
+                                         names_program(what) || names_capsule(what)))
+    throw UserError({}, fmt::format("--sample-pixels belongs to scenes, and '{}' is none", what),
+                    "leave it away to run the whole launch");
+}
+
 Exit run(const Session& session, const RunOptions& options) {
   const std::string& what = options.scene.scene;
   check_scene_options(options);
+  check_sampled(options);
   if (names_script(what)) {
     if (options.launch.max_cycles)
       throw UserError({}, "--max-cycles cannot be used with Amber scripts",

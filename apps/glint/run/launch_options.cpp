@@ -81,6 +81,7 @@ void add_launch_options(Command command, LaunchOptions& options) {
       .in_range(uint64_t{0}, kMostCount)
       .capture_default_str();
   add_observe_options(command, options.observe);
+  add_sample_options(command, options.sample);
   add_shader_options(command, options.shaders);
 }
 
@@ -90,6 +91,19 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   options.on_fault = options.on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
   options.settings = setup::with_oracles(options.oracles, options.settings);
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
+}
+
+void check_sample(const LaunchOptions& options) {
+  if (!options.sample.wanted()) return;
+  const auto refuse = [](const std::string& option, const std::string& why) {
+    throw UserError({}, "--sample-pixels cannot be used with " + option, why);
+  };
+  if (options.mode != "timing")
+    refuse("--mode functional", "the functional machine has no cycles, so run the whole launch");
+  if (observes(options.observe))
+    refuse("--profile, --sample, --heat and --trace",
+           "they show every block of a launch; leave --sample-pixels away to run all of them");
+  if (options.max_cycles) refuse("--max-cycles", "an estimate needs the sample's end");
 }
 
 void check_max_cycles(uint64_t max_cycles, bool timing) {

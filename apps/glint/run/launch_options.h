@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/glint/options/command_line.h"
+#include "apps/glint/options/sample_options.h"
 #include "apps/glint/options/shader_options.h"
 #include "exec/fault.h"
 #include "pipeline/params.h"
@@ -33,6 +34,7 @@ struct LaunchOptions {
   uint64_t print_limit = 1000;                   // messages of debugPrintfEXT to show
   ShaderOptions shaders;
   pipeline::Observation observe;
+  SampleChoice sample;
 };
 
 // Adds the options to the command. They are complete once finish_launch_options() has been called after
@@ -43,6 +45,9 @@ void finish_launch_options(const Command& command, LaunchOptions& options);
 void add_stats_option(Command command, std::string& stats);  // adds --stats
 void add_max_cycles_option(Command command, uint64_t& max_cycles,
                            const std::string& help);  // adds --max-cycles
+
+// Throws UserError when a sampled run was asked for together with something that needs a whole launch.
+void check_sample(const LaunchOptions& options);
 
 // Throws UserError when the functional machine is given a limit of cycles.
 void check_max_cycles(uint64_t max_cycles, bool timing);

@@ -110,7 +110,7 @@ void note_not_finite(const std::string& file, const pictures::ImageView& image, 
 
 Exit print_result(const Session& session, bool json, const pipeline::RenderJob& job,
                   const pipeline::RenderResult& result, const report::RunInfo& info, const std::string& title,
-                  std::vector<std::string> files) {
+                  std::vector<std::string> files, std::span<const pipeline::Estimate> estimates) {
   if (!result.faults.empty()) fmt::print(stderr, "{}\n", result.faults.to_string());
   if (info.part) fmt::print(stderr, "warning: {}\n  note: all results are those up to there\n", info.message);
   if (json) {
@@ -119,6 +119,7 @@ Exit print_result(const Session& session, bool json, const pipeline::RenderJob& 
     return Exit(info.exit);
   }
   report::Summary summary = summarise(job, result);
+  if (info.sample) add_sample(*info.sample, estimates, summary);
   summary.title = title;
   summary.files = std::move(files);
   write_output("", report::format_summary(summary, session.terminal));

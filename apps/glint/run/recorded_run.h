@@ -3,11 +3,13 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "apps/glint/session.h"
 #include "pipeline/render.h"
+#include "pipeline/sampling/estimates.h"
 #include "report/files/run_directory.h"
 
 namespace glint::app {
@@ -45,9 +47,10 @@ void note_not_finite(const std::string& file, const pictures::ImageView& image, 
                      const pipeline::RenderResult& result, report::RunInfo& info);
 
 // Prints the faults that were let pass to stderr. Prints the statistics as JSON, or the summary of a run with
-// lines about the files that it left. Returns the exit code that `info` has, and says why it is not 0.
+// lines about the files that it left; of a sampled run, these are estimates of the whole launch. Returns the
+// exit code that `info` has, and says why it is not 0.
 Exit print_result(const Session& session, bool json, const pipeline::RenderJob& job,
                   const pipeline::RenderResult& result, const report::RunInfo& info, const std::string& title,
-                  std::vector<std::string> files);
+                  std::vector<std::string> files, std::span<const pipeline::Estimate> estimates = {});
 
 }  // namespace glint::app

@@ -16,6 +16,7 @@
 #include "apps/glint/run/recorded_run.h"
 #include "pictures/exr.h"
 #include "pipeline/render.h"
+#include "pipeline/sampling/sampled_run.h"
 #include "pipeline/structure_cache.h"
 #include "report/files/run_directory.h"
 #include "report/terminal/progress.h"
@@ -52,16 +53,28 @@ void refuse_file(const std::string& what) {
       "kernels (.ptx), capsules (.capsule), Amber scripts (.amber) and the scenes of 'glint list scenes'");
 }
 
+// Renders a sample of the job's frame, and notes in `info` what was sampled.
+pipeline::SampledRun render_sample(const SampleChoice& choice, report::RunInfo& info,
+                                   pipeline::RenderJob& job) {
+  const pipeline::SampleOptions options = choice.options();
+  pipeline::SampledRun run = pipeline::render_sampled(job, options);
+  info.sample = {options.share,       options.seed,          run.plan.scale,
+                 run.plan.num_blocks, run.plan.timed.size(), run.plan.warm.size()};
+  return run;
+}
+
 // Renders the job and leaves its files in the directory.
 pipeline::RenderResult render_into(const Session& session, const report::RunDirectory& directory,
                                    report::RunInfo& info, pipeline::RenderJob& job,
-                                   const SceneOptions& options, uint64_t max_cycles,
-                                   std::vector<std::string>& files) {
+                                   const SceneOptions& options, const LaunchOptions& launch,
+                                   std::vector<std::string>& files, pipeline::SampledRun& sampled) {
   const bool has_built_in_shaders = options.shader_dir.empty();
   const auto render = [&](const pipeline::LaunchWatch& watch) {
     job.watch = watch;
     job.watch.is_bounded = has_built_in_shaders;  // Their loops count to numbers of rays.
-    pipeline::RenderResult rendered = pipeline::render_and_drain(job);
+    if (launch.sample.wanted()) sampled = render_sample(launch.sample, info, job);
+    pipeline::RenderResult rendered =
+        launch.sample.wanted() ? std::move(sampled.result) : pipeline::render_and_drain(job);
     info.structures = structure_info(rendered.structures);
     return rendered;
   };
@@ -71,10 +84,11 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     if (options.exr) directory.write("image.exr", pictures::exr_bytes(image));
     note_not_finite("image.pfm", image, rendered.picture, rendered, info);
     directory.write_stats(rendered.statistics(), info.compact);
+    if (launch.sample.wanted()) directory.write("sample.csv", pipeline::batches_csv(sampled));
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));
   };
-  return run_recorded(session, max_cycles, directory, info, render, keep, job.prints);
+  return run_recorded(session, launch.max_cycles, directory, info, render, keep, job.prints);
 }
 
 }  // namespace
@@ -178,10 +192,11 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
   std::vector<std::string> files = {
       "picture    " + directory.path_of("image.png"),
       "statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt")};
+  pipeline::SampledRun sampled;
   const pipeline::RenderResult result =
-      render_into(session, directory, info, job, options, launch.max_cycles, files);
+      render_into(session, directory, info, job, options, launch, files, sampled);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}\n", warning);
-  return print_result(session, launch.json, job, result, info, title, std::move(files));
+  return print_result(session, launch.json, job, result, info, title, std::move(files), sampled.estimates);
 }
 
 }  // namespace glint::app

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/summary.h"
 
+#include <utility>
+
 #include "isa/warp.h"
 #include "memsys/peak.h"
 #include "report/files/stat_rows.h"
@@ -74,6 +76,14 @@ report::Summary summarise(const pipeline::RenderJob& job, const pipeline::Render
   out.wall_seconds = result.wall_seconds;
   if (job.timing) out.timing = timing_of(job, result);
   return out;
+}
+
+void add_sample(const report::SampleInfo& sample, std::span<const pipeline::Estimate> estimates,
+                report::Summary& summary) {
+  report::SampleSummary out{sample.share, sample.seed, sample.scale, sample.timed_blocks, sample.blocks, {}};
+  for (const pipeline::Estimate& one : estimates)
+    out.rows.push_back({std::string(one.name), std::string(one.unit), one.value, one.low, one.high});
+  summary.sample = std::move(out);
 }
 
 }  // namespace glint::app

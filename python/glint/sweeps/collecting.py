@@ -29,7 +29,7 @@ class Collection:
     """Holds the results of a sweep.
 
     Attributes:
-        rows: A row for each point that is done, in the order of the sweep: index, id, workload, config, seed, the keys that differ, then the metrics.
+        rows: A row for each point that is done, in the order of the sweep: index, id, workload, config, seed, the keys that differ, then the metrics and, of sampled runs, the estimates.
         keys: The names of the keys that differ.
         failures: The records of points that failed.
         costs: For each different point what it took: seconds, bytes, host. These numbers differ from run to run, so no row has them.
@@ -98,7 +98,8 @@ def _collected(store: Store, folder: SweepFolder) -> Collection:
             continue
         settings = {key: number_of(point["resolved"].get(key, point["set"].get(key))) for key in keys}
         record = known[point["id"]]
-        rows.append({**{name: point.get(name) for name in _NAMES}, **settings, **{name: record["metrics"].get(name) for name in metrics() if name in record["metrics"]}})
+        numbers = {name: record["metrics"].get(name) for name in metrics() if name in record["metrics"]}
+        rows.append({**{name: point.get(name) for name in _NAMES}, **settings, **numbers, **{name: value for name, value in record["metrics"].items() if name not in numbers}})
     failures = [record for id in dict.fromkeys(point["id"] for point in points) if id not in known and (record := store.read_failure(id))]
     costs = [{"id": id, **{name: record["cost"].get(name) for name in ("seconds", "peak_bytes", "host", "when")}, "failed_attempts": len(record["cost"]["failed_attempts"])}
              for id, record in known.items()]

@@ -114,11 +114,19 @@ class Work:
             files["report.html"] = folder / "report.html"
             subprocess.run([self.program, "report", str(folder / "run"), "-o", str(files["report.html"])], capture_output=True, check=True, env=self._environment())
         record = {"schema": SCHEMA, **_description(point), "program": self.program_hash, "glint": [run.info["version"], run.info["git"]],
-                  "partial": ended.code == _PARTIAL, "metrics": {name: run.metrics[name] for name, about in metrics().items() if "wall_seconds" not in about.formula},
+                  "partial": ended.code == _PARTIAL, "metrics": _numbers(run),
                   "cost": {"seconds": round(ended.seconds, 4), "peak_bytes": ended.peak_bytes, "host": socket.gethostname(), "when": _now(), "failed_attempts": attempts},
                   "files": {name: {"bytes": path.stat().st_size, "crc32": f"{zlib.crc32(path.read_bytes()):08x}"} for name, path in files.items()}}
         store.commit(point["id"], files, record)
         return {"id": point["id"], "status": "done", "seconds": ended.seconds, "peak_bytes": ended.peak_bytes}
+
+
+def _numbers(run: Run) -> dict[str, float | None]:
+    """Returns the metrics of a point and, of a sampled run, its estimates with their intervals: NAME, NAME_low, NAME_high."""
+    out = {name: run.metrics[name] for name, about in metrics().items() if "wall_seconds" not in about.formula}
+    for name, one in run.estimates.items() if run.is_sampled else ():
+        out.update({name: one.value, f"{name}_low": one.low, f"{name}_high": one.high})
+    return out
 
 
 def _reason(ended: Ended, log: pathlib.Path, work: Work) -> tuple[str, str]:

@@ -1,0 +1,55 @@
+// Chooses the blocks of a launch that a sampled run times, and those that it runs functionally.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/params.h"
+
+namespace glint::pipeline {
+
+struct SampleOptions {
+  double share = 0.05;  // the share of a launch's blocks that is timed: more than 0, at most a half
+  uint64_t seed = 1;    // selects which
+};
+
+// Names where a block that is not timed lies: within a segment, in front of one, or elsewhere.
+enum class Stratum : uint8_t { Inside, Lead, Rest, Count };
+
+// Names a block that runs functionally.
+struct WarmBlock {
+  uint32_t block = 0;
+  Stratum stratum = Stratum::Inside;
+};
+
+// The machine is cut to 1/scale of its cores and memory partitions, and the sample consists of segments. A
+// segment is a run of neighbouring blocks, of which the small machine runs one in `scale`: as many as its
+// cores would get of them if it were whole. The other cores' blocks run functionally and leave what they
+// touch in the L2. So neighbours meet in the caches as they do in a whole run, which they do not when the
+// timed blocks are spread evenly. Half of the blocks in front of a segment, and an eighth of all others, run
+// functionally, too: for the L2, and to estimate the work of the whole launch.
+struct SamplePlan {
+  uint32_t num_blocks = 0;       // of the launch
+  uint32_t scale = 1;            // the part of the machine that runs them is 1/scale
+  std::vector<uint32_t> timed;   // ascending
+  std::vector<uint32_t> starts;  // indices into `timed` at which segments begin; the first is 0
+  std::vector<WarmBlock> warm;   // ascending
+  // These are the numbers of blocks that are not timed, executed or not, by stratum.
+  std::array<uint32_t, size_t(Stratum::Count)> sizes{};
+};
+
+// Returns the largest part 1/n that the machine can be cut to: n divides the numbers of cores and of memory
+// partitions, and a part still has room for `share` of the blocks.
+uint32_t largest_scale(const GpuParams& gpu, double share);
+
+// Returns the machine cut to 1/scale. The L2 keeps its whole size, because the data that blocks share are not
+// fewer in a sample.
+GpuParams cut(const GpuParams& gpu, uint32_t scale);
+
+// Makes the plan for a launch of `num_blocks` of which the cut machine holds `resident` at a time. Equal
+// arguments give equal plans. Throws UserError for a share that is too small for the launch.
+SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32_t resident, uint32_t scale);
+
+}  // namespace glint::pipeline

@@ -1,0 +1,182 @@
+// Runs a sample and reads the machine's counters between its segments.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/sampling/sampled_run.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <fmt/format.h>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "base/diagnostics.h"
+#include "pipeline/launch_part.h"
+#include "pipeline/run_stats.h"
+#include "pipeline/sampling/warmer.h"
+#include "pipeline/scene_world.h"
+#include "pipeline/timing_machine.h"
+
+namespace glint::pipeline {
+namespace {
+
+template <class Reason>
+double all_of(const stats::Breakdown<Reason>& breakdown) {
+  return double(breakdown.total());
+}
+
+// Returns what the machine has counted up to now.
+BatchCounts counts_of(const TimingMachine& machine, Cycle now) {
+  BatchCounts out{};
+  const auto add = [&](BatchCount which, double count) { out[size_t(which)] += count; };
+  add(BatchCount::Cycles, double(now));
+  for (uint32_t i = 0; i < machine.num_cores(); ++i) {
+    add(BatchCount::Instructions, double(machine.core(i).stats().instructions.value()));
+    add(BatchCount::Nodes, double(machine.rt_unit(i).stats().nodes.value()));
+    const mem::CacheStats& l1 = machine.memory().l1(i).stats();
+    add(BatchCount::L1Reads, all_of(l1.reads));
+    add(BatchCount::L1Hits, all_of(l1.hits));
+  }
+  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) {
+    const mem::Partition& partition = machine.memory().partition(i);
+    for (uint32_t slice = 0; slice < partition.num_slices(); ++slice) {
+      add(BatchCount::L2Reads, all_of(partition.slice(slice).stats().reads));
+      add(BatchCount::L2Hits, all_of(partition.slice(slice).stats().hits));
+    }
+    const mem::DramStats& dram = partition.dram().stats();
+    add(BatchCount::DramClocks, double(dram.clocks.value()));
+    add(BatchCount::DramBusy, double(dram.busy_clocks.value()));
+  }
+  return out;
+}
+
+// Runs the untimed blocks before the timed ones behind them start, and closes a batch where a segment begins.
+class Sampler final : public LaunchPart {
+ public:
+  Sampler(const SamplePlan& plan, TimingMachine& machine, const exec::World& world)
+      : plan_(plan),
+        machine_(machine),
+        warmer_(world, machine.params().core.instruction_budget, machine.params().memory, machine.memory()) {}
+
+  std::span<const uint32_t> blocks() const override { return plan_.timed; }
+
+  void before_start(Cycle now, uint32_t started) override {
+    if (started < plan_.timed.size()) warm(plan_.timed[started]);
+    if (started == last_started_) return;
+    last_started_ = started;
+    if (first_wave_ == 0) first_wave_ = started;
+    // The second wave ends what is left of the cold start.
+    if (!is_full_ && started >= 2 * first_wave_) is_full_ = true, mark_ = counts_of(machine_, now);
+    while (next_start_ < plan_.starts.size() && plan_.starts[next_start_] <= started) ++next_start_;
+    const bool ends = started == plan_.timed.size(), begins = next_start_ > segment_;
+    if (is_full_ && (ends || begins)) close_batch(now, started);
+    segment_ = next_start_;
+  }
+
+  // Returns what a run of `cycles` has counted, after running what is left of the untimed blocks.
+  SampleCounts finish(Cycle cycles);
+  const exec::FaultLog& passed() const { return warmer_.passed(); }
+
+ private:
+  void warm(uint32_t until) {
+    for (; next_warm_ < plan_.warm.size() && plan_.warm[next_warm_].block < until; ++next_warm_) {
+      const WorkCounts counts = warmer_.run(plan_.warm[next_warm_].block);
+      work_[size_t(plan_.warm[next_warm_].stratum)].push_back({counts.instructions(), counts.rays.nodes});
+    }
+  }
+  void close_batch(Cycle now, uint32_t started) {
+    const BatchCounts counts = counts_of(machine_, now);
+    if (at(counts, BatchCount::Cycles) <= at(mark_, BatchCount::Cycles)) return;
+    SampleBatch batch{started, counts};
+    for (size_t i = 0; i < counts.size(); ++i) batch.counts[i] -= mark_[i];
+    batches_.push_back(batch);
+    mark_ = counts;
+  }
+
+  const SamplePlan& plan_;
+  TimingMachine& machine_;
+  Warmer warmer_;
+  size_t next_warm_ = 0, next_start_ = 0, segment_ = 0;
+  uint32_t last_started_ = 0, first_wave_ = 0;
+  bool is_full_ = false;
+  BatchCounts mark_{};
+  std::vector<SampleBatch> batches_;
+  std::array<std::vector<BlockWork>, size_t(Stratum::Count)> work_;
+};
+
+SampleCounts Sampler::finish(Cycle cycles) {
+  warm(plan_.num_blocks);
+  return {&plan_, std::move(work_), std::move(batches_), counts_of(machine_, cycles)};
+}
+
+// Returns the blocks of the launch that the machine holds at a time.
+uint32_t resident_blocks(const TimingMachine& machine) {
+  RenderResult result;
+  machine.collect(result);
+  return std::max(1u, result.residency.blocks * machine.num_cores());
+}
+
+void check(const SampleOptions& options) {
+  if (!(options.share > 0 && options.share <= 0.5))
+    throw UserError({}, fmt::format("a sample of {:g} % is out of range", 100 * options.share),
+                    "it has more than 0 % and at most 50 % of a launch's blocks");
+}
+
+}  // namespace
+
+SampledRun run_sampled(const exec::World& world, const GpuParams& gpu, const SampleOptions& options,
+                       uint32_t threads, const LaunchWatch& watch) {
+  check(options);
+  SampledRun run;
+  const auto begin = std::chrono::steady_clock::now();
+  const uint32_t scale = largest_scale(gpu, options.share);
+  const GpuParams part = cut(gpu, scale);
+  auto machine = std::make_unique<TimingMachine>(part, world, false, HostOptions{.threads = threads});
+  run.plan = plan_sample(options, exec::num_blocks(world), resident_blocks(*machine), scale);
+  Sampler sampler(run.plan, *machine, world);
+  RenderResult& result = run.result;
+  result.cycles = machine->run(watch, &sampler);
+  result.end = machine->end();
+  result.progress = machine->progress();
+  machine->collect(result);
+  result.faults = machine->passed();
+  auto stats = std::make_unique<RunStats>(std::move(machine));
+  if (result.end == LaunchEnd::Whole) {
+    const SampleCounts counts = sampler.finish(result.cycles);
+    if (counts.batches.size() < 2)
+      throw UserError({}, "the sample has too few segments for an interval", "take a larger share");
+    run.batches = counts.batches;
+    run.estimates = estimate(counts);
+    stats->keep(std::make_unique<SampleStats>(&stats->root(), run.estimates));
+  }
+  result.faults.add(sampler.passed());
+  result.stats = std::move(stats);
+  for (const ClassCounts& counts : result.by_class) {
+    result.warp_instructions += counts.instructions;
+    result.lane_instructions += counts.lanes;
+  }
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return run;
+}
+
+SampledRun render_sampled(RenderJob& job, const SampleOptions& options) {
+  check(options);
+  SceneWorld scene(job, SceneWorld::Drain{job.scene});
+  scene.world.on_fault = job.on_fault;
+  SampledRun run = run_sampled(scene.world, job.gpu, options, job.threads, job.watch);
+  read_frame(scene, job, run.result);
+  return run;
+}
+
+std::string batches_csv(const SampledRun& run) {
+  std::string out =
+      "started,cycles,instructions,nodes,l1_reads,l1_hits,l2_reads,l2_hits,dram_clocks,dram_busy\n";
+  for (const SampleBatch& batch : run.batches) {
+    out += fmt::format("{}", batch.started);
+    for (const double count : batch.counts) out += fmt::format(",{}", count);
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace glint::pipeline

@@ -1,0 +1,48 @@
+// Runs blocks functionally, and lets the L2 of a timing machine hold what they touch.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/coalesce.h"
+#include "exec/endless_loops.h"
+#include "exec/executor.h"
+#include "memsys/memory_system.h"
+#include "pipeline/block_runner.h"
+
+namespace glint::pipeline {
+
+// Model: what blocks touch goes through a filter of as many lines as an L1 has in place of the L1s of their
+// cores. Accesses to stacks and shared memory are left out.
+class Warmer {
+ public:
+  // `world` and `memory` outlive the warmer. `params` are those of the memory.
+  Warmer(const exec::World& world, uint64_t instruction_budget, const mem::Params& params,
+         mem::MemorySystem& memory);
+
+  // Runs block `index` and returns what it did. Throws Error(Exit::Fault) as run_functional()
+  // does.
+  WorkCounts run(uint32_t index);
+  const exec::FaultLog& passed() const { return executor_.passed(); }  // faults that were let pass
+
+ private:
+  void touch(const exec::Retired& retired);
+  void touch_bytes(Address physical, uint32_t bytes);
+  void touch_line(Address line, uint8_t sectors);
+
+  const exec::World& world_;
+  const uint32_t line_bytes_;
+  mem::MemorySystem& memory_;
+  exec::Executor executor_;
+  const exec::EndlessLoops endless_;
+  BlockRunner runner_;
+  const BlockRunner::NodeListener nodes_;
+  core::LineList lines_;
+  struct Recent {
+    Address line = ~Address{0};
+    uint8_t sectors = 0;
+  };
+  std::vector<Recent> recent_;  // direct-mapped
+};
+
+}  // namespace glint::pipeline

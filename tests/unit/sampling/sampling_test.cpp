@@ -1,0 +1,162 @@
+// Tests the choice of a sample, its statistics, and that a sampled run is the same on any number of threads.
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include "base/diagnostics.h"
+#include "base/student.h"
+#include "pipeline/run_stats.h"
+#include "pipeline/sampling/sampled_run.h"
+#include "tests/support/catch.h"
+#include "tests/support/small_jobs.h"
+
+using namespace glint;
+using namespace glint::pipeline;
+
+namespace {
+
+// Returns counts of a sample of 1/4 of a launch, of one block per stratum and `batches` with the same work.
+SampleCounts counts_of(const SamplePlan& plan, const std::vector<double>& cycles_of_batches) {
+  SampleCounts counts;
+  counts.plan = &plan;
+  for (const double cycles : cycles_of_batches) {
+    SampleBatch batch;
+    batch.counts[size_t(BatchCount::Cycles)] = cycles;
+    batch.counts[size_t(BatchCount::Nodes)] = 100;
+    batch.counts[size_t(BatchCount::L1Reads)] = 50;
+    batch.counts[size_t(BatchCount::L1Hits)] = 25;
+    for (size_t i = 0; i < batch.counts.size(); ++i) counts.total[i] += batch.counts[i];
+    counts.batches.push_back(batch);
+  }
+  return counts;
+}
+
+const Estimate& find(const std::vector<Estimate>& all, std::string_view name) {
+  return *std::ranges::find(all, name, &Estimate::name);
+}
+
+}  // namespace
+
+TEST_CASE("A sample has the share that was asked for, and every block has one place", "[sampling]") {
+  const SamplePlan plan = plan_sample({.share = 0.05, .seed = 3}, 8192, 42, 4);
+  CHECK(plan.timed.size() >= 400);
+  CHECK(plan.timed.size() <= 410);
+  CHECK(plan.starts.size() == 10);
+  CHECK(std::ranges::is_sorted(plan.timed));
+  CHECK(std::ranges::is_sorted(plan.warm, {}, &WarmBlock::block));
+  std::set<uint32_t> blocks(plan.timed.begin(), plan.timed.end());
+  for (const WarmBlock& warm : plan.warm) blocks.insert(warm.block);
+  CHECK(blocks.size() == plan.timed.size() + plan.warm.size());
+  CHECK(*blocks.rbegin() < 8192);
+  CHECK(plan.timed.size() + plan.sizes[0] + plan.sizes[1] + plan.sizes[2] == 8192);
+  // Of the others in a segment all run, in front of it a half, and elsewhere an eighth.
+  std::array<size_t, 3> run{};
+  for (const WarmBlock& warm : plan.warm) ++run[size_t(warm.stratum)];
+  CHECK(run[0] == plan.sizes[0]);
+  CHECK(std::abs(double(run[1]) / plan.sizes[1] - 0.5) < 0.05);
+  CHECK(std::abs(double(run[2]) / plan.sizes[2] - 0.125) < 0.02);
+}
+
+TEST_CASE("Equal seeds choose equal blocks, and other seeds choose others", "[sampling]") {
+  const auto timed = [](uint64_t seed) {
+    return plan_sample({.share = 0.05, .seed = seed}, 8192, 42, 4).timed;
+  };
+  CHECK(timed(1) == timed(1));
+  CHECK(timed(1) != timed(2));
+}
+
+TEST_CASE("A sample that cannot fill its machine is refused", "[sampling]") {
+  CHECK_THROWS_WITH(plan_sample({.share = 0.05}, 512, 42, 4),
+                    Catch::Contains("a sample of 5 % has 26 of 512"));
+}
+
+TEST_CASE("The machine is cut by what divides cores and partitions and leaves room for the share",
+          "[sampling]") {
+  GpuParams gpu;
+  gpu.cores = 8, gpu.memory.dram.channels = 4;
+  CHECK(largest_scale(gpu, 0.05) == 4);
+  CHECK(largest_scale(gpu, 0.3) == 2);
+  CHECK(largest_scale(gpu, 0.5) == 1);
+  gpu.cores = 9;
+  CHECK(largest_scale(gpu, 0.05) == 1);
+  gpu.cores = 8;
+  const GpuParams part = cut(gpu, 4);
+  CHECK(part.cores == 2);
+  CHECK(part.memory.dram.channels == 1);
+  CHECK(part.memory.l2.slice_size == 4 * gpu.memory.l2.slice_size);
+}
+
+TEST_CASE("Cycles are those of the sample and, for the work that it lacks, those of each node",
+          "[sampling]") {
+  SamplePlan plan;
+  plan.num_blocks = 40, plan.scale = 2, plan.sizes = {0, 0, 30};
+  SampleCounts counts = counts_of(plan, {1000, 1000, 1000});
+  counts.work[size_t(Stratum::Rest)] = {{0, 30}, {0, 30}};
+  const std::vector<Estimate> all = estimate(counts);
+  // The whole launch visits 300 + 30 * 30 nodes, of which a half machine does 600: twice the sample's.
+  CHECK(find(all, "nodes").value == 1200);
+  CHECK(find(all, "cycles").value == 6000);
+  CHECK(find(all, "l1_hit_rate").value == 0.5);
+  CHECK(find(all, "cycles").low < 6000);
+  CHECK(find(all, "cycles").high > 6000);
+}
+
+TEST_CASE("An interval grows with the scatter of the batches and with that of the work", "[sampling]") {
+  SamplePlan plan;
+  plan.num_blocks = 40, plan.scale = 2, plan.sizes = {0, 0, 30};
+  const auto width = [&](const std::vector<double>& cycles, uint64_t a, uint64_t b) {
+    SampleCounts counts = counts_of(plan, cycles);
+    counts.work[size_t(Stratum::Rest)] = {{0, a}, {0, b}};
+    const std::vector<Estimate> all = estimate(counts);
+    return find(all, "cycles").high - find(all, "cycles").low;
+  };
+  const double even = width({1000, 1000, 1000}, 30, 30);
+  CHECK(width({900, 1000, 1100}, 30, 30) > 1.2 * even);
+  CHECK(width({1000, 1000, 1000}, 20, 40) > 1.2 * even);
+}
+
+TEST_CASE("Student's quantiles are those of the tables", "[sampling]") {
+  CHECK(student_quantile(1) == Approx(12.706));
+  CHECK(student_quantile(9) == Approx(2.262));
+  CHECK(student_quantile(10) == Approx(2.228).epsilon(0.001));
+  CHECK(student_quantile(30) == Approx(2.042).epsilon(0.001));
+  CHECK(student_quantile(100000) == Approx(1.960).epsilon(0.001));
+}
+
+TEST_CASE("A sampled frame estimates the whole one, with the same numbers on any number of threads",
+          "[sampling]") {
+  const auto job_on = [](uint32_t threads) {
+    RenderJob job = test::small_job("SHIP", Workload::Shadow, 128, 1);
+    job.gpu = test::preset("mobile");
+    job.gpu.core.warps = 4;  // so that the sample fills the cores several times
+    job.threads = threads;
+    return job;
+  };
+  RenderJob one = job_on(1), two = job_on(2), whole = job_on(1);
+  const SampleOptions options{.share = 0.15, .seed = 1};
+  const SampledRun first = render_sampled(one, options), second = render_sampled(two, options);
+  REQUIRE(first.estimates.size() == second.estimates.size());
+  for (size_t i = 0; i < first.estimates.size(); ++i) {
+    CHECK(first.estimates[i].value == second.estimates[i].value);
+    CHECK(first.estimates[i].low == second.estimates[i].low);
+  }
+  CHECK(batches_csv(first) == batches_csv(second));
+  CHECK(first.result.rgba == second.result.rgba);
+  const RenderResult truth = render(whole);
+  const Estimate& cycles = find(first.estimates, "cycles");
+  CHECK(cycles.value == Approx(double(truth.cycles)).epsilon(0.15));
+  CHECK(find(first.estimates, "nodes").value == Approx(double(truth.rays.nodes)).epsilon(0.1));
+  // A pixel that was run is that of the whole frame.
+  size_t run = 0, same = 0;
+  for (size_t i = 0; i < truth.rgba.size(); i += 4) {
+    if (std::all_of(&first.result.rgba[i], &first.result.rgba[i] + 4, [](float x) { return x == 0; }))
+      continue;
+    ++run;
+    same += std::equal(&truth.rgba[i], &truth.rgba[i] + 4, &first.result.rgba[i]);
+  }
+  CHECK(run > truth.rgba.size() / 4 / 8);
+  CHECK(run == same);
+}
