@@ -28,7 +28,7 @@ uint64_t IssueStage::leave_out_bank_conflicts(Scheduler& scheduler, uint64_t rea
 
 void IssueStage::start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now) {
   const uint32_t issues = core_.table.issues(pc);
-  const Cycle step = std::max<Cycle>(row.latency / issues, 1);
+  const Cycle step = row.is_whole ? std::max<Cycle>(row.latency / issues, 1) : 1;
   at.sequence = {issues - 1, pc, step, row.latency - (issues - 1) * step};
   at.front = {now + step, row.wait};
 }

@@ -77,6 +77,7 @@ void take_time(IssueRow& row, const OpTime& time) {
   row.interval = uint16_t(time.interval * OpTime::kParts);
   row.alternates = time.alternates;
   row.is_sequence = time.issues > 1;
+  row.is_whole = time.whole;
 }
 
 Door door_of(const IssueRow& row, const TextureParams& texture) {

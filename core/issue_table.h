@@ -49,6 +49,7 @@ struct alignas(32) IssueRow {
   bool alternates : 1 = false;      // OpTime::alternates
   bool is_texture : 1 = false;      // goes through the texture unit
   bool is_sequence : 1 = false;     // IssueTable::issues() is more than 1
+  bool is_whole : 1 = false;        // OpTime::whole
   isa::AtomicKind atomic : 2 = isa::AtomicKind::Integer;
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle

@@ -21,7 +21,11 @@ struct OpTime {
   double interval = 1;
   isa::Unit pipe = isa::Unit::Count;  // the unit on whose pipe it runs; Count: its own unit
   bool alternates = false;  // It alternates between pipes, so that `latency` includes their crossing.
-  uint32_t issues = 1;      // machine instructions that make up the op: issue slots, spread over the latency
+  uint32_t issues = 1;      // machine instructions that make up the op: issue slots
+  // A whole op ends in a branch for rare operands, so that its warp issues nothing else before its end, and
+  // its slots are spread over the latency. The parts of other ops issue as early as they can, because an
+  // assembler fills the gaps between them with the instructions that follow.
+  bool whole = false;
 
   static constexpr uint32_t kParts = 16;  // parts of a cycle
 };

@@ -13,9 +13,10 @@ using isa::Unit;
 // its assembler translates them. Intervals are 32 lanes x 4 schedulers over the lane operations that a core
 // did per cycle. The latency of a step of two ops is split by the other op's latency on its own and by the
 // crossing of pipes (1 cycle). The last number, where there is one, is the number of machine instructions of
-// the op as they execute without a slow path, from the listings that the same measurements took. It is a
-// guess for divisions of 64 bits, whose listings end at a call. Model: a sequence of instructions holds one
-// pipe for its throughput, whatever pipes its parts run on.
+// the op as they execute without a slow path, from the listings that the same measurements took; `true`
+// behind it marks the ops that end in a branch to a slow path. The number is a guess for divisions of 64
+// bits, whose listings end at a call. Model: a sequence of instructions holds one pipe for its throughput,
+// whatever pipes its parts run on.
 constexpr OpTime kTimes[] = {
     // The assembler turns every second addition into a multiply-add on the other pipe: 5 cycles, one per
     // cycle.
@@ -68,10 +69,11 @@ constexpr OpTime kTimes[] = {
     {"div.u32", 124, 29, Unit::Count, false, 17},
     {"rem.s32", 132, 30, Unit::Count, false, 20},
     {"rem.u32", 126, 28, Unit::Count, false, 16},
-    {"div.s64", 331, 120, Unit::Count, false, 70},
-    {"div.u64", 331, 120, Unit::Count, false, 70},  // the intervals are guesses
-    {"rem.s64", 331, 120, Unit::Count, false, 70},  // the intervals are guesses
-    {"rem.u64", 331, 120, Unit::Count, false, 58},  // the interval is a guess; the count is from bench/probes
+    {"div.s64", 331, 120, Unit::Count, false, 70, true},
+    {"div.u64", 331, 120, Unit::Count, false, 70, true},  // the intervals are guesses
+    {"rem.s64", 331, 120, Unit::Count, false, 70, true},  // the intervals are guesses
+    {"rem.u64", 331, 120, Unit::Count, false, 58,
+     true},  // the interval is a guess; the count is from bench/probes
     // Comparisons, minima and the like run on the integer pipe.
     {"setp.*.f32", 4, 2, Unit::Int},
     {"set.*.f32", 4, 2, Unit::Int},
@@ -83,9 +85,9 @@ constexpr OpTime kTimes[] = {
     {"fma.rn*.f16x2", 8, 1},
     {"fma.rn*.bf16x2", 8, 1},
     // These are sequences around the special-function unit.
-    {"div.rn*.f32", 57, 17, Unit::Count, false, 10},
-    {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10},
-    {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11},
+    {"div.rn*.f32", 57, 17, Unit::Count, false, 10, true},
+    {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10, true},
+    {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11, true},
     {"rcp.approx.f32", 41, 8.5625, Unit::Count, false, 7},
     {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"lg2.approx.f32", 39, 8, Unit::Count, false, 4},
@@ -97,9 +99,9 @@ constexpr OpTime kTimes[] = {
     {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"fma.r*.f64", 8, 2.1875},  // three operands of 64 bits, so reads of registers hold it up
-    {"div.r*.f64", 124, 26, Unit::Count, false, 16},
-    {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15},
-    {"rcp.rn.f64", 92, 20, Unit::Count, false, 11},  // guess
+    {"div.r*.f64", 124, 26, Unit::Count, false, 16, true},
+    {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15, true},
+    {"rcp.rn.f64", 92, 20, Unit::Count, false, 11, true},  // guess
     // These are conversions.
     {"cvt.rn.f32.s32", 4, 2, Unit::Int},
     {"cvt.rn.f32.u32", 4, 2, Unit::Int},

@@ -12,8 +12,9 @@ namespace glint::frontend {
 // move. None of them moves across an op that does so, or inside a region from SaveLive to RestoreLive. Loads
 // and stores of one space keep their order unless both are loads or both address the frame at displacements
 // that do not overlap. `guard_latency` is the number of extra cycles assumed before a predicate can guard an
-// instruction. With `slow_paths_end_runs` nothing moves across an op with a slow path (slow_paths.h).
+// instruction. With `like_an_assembler` nothing moves across an op with a slow path (slow_paths.h), and a run
+// that can stay within as few registers as an H200's assembler takes does.
 void schedule(VirtualProgram& program, uint32_t max_registers, uint32_t guard_latency = 0,
-              bool slow_paths_end_runs = false);
+              bool like_an_assembler = false);
 
 }  // namespace glint::frontend

@@ -255,18 +255,13 @@ class CountedLoop {
     return VirtualOperand::of(found->second);
   }
 
-  // Appends copies of the body. Model: each copy is a block of its own, so that loads stay in their turn. An
-  // H200 waits for memory once in each of the four turns (k_matmul, docs/validation.md), not once for all of
-  // them. Returns the first copy. The last copy goes to `next`, or to the block that follows it.
+  // Appends copies of the body as one block, whose loads the scheduler may issue together. Returns the block.
+  // It goes to `next`, or to the block that follows it.
   BlockId add_turns(int64_t turns, BlockId next = kNoBlock) {
     stepped_.clear(), names_.clear(), first_.clear();
-    const auto body = BlockId(draft_.blocks.size());
-    for (int64_t turn = 0; turn < turns; ++turn) {
-      std::vector<VirtualInst> code;
-      copy_body(turn, turn + 1 == turns, code);
-      add_block(std::move(code), turn + 1 == turns && next != kNoBlock ? next : body + BlockId(turn) + 1);
-    }
-    return body;
+    std::vector<VirtualInst> code;
+    for (int64_t turn = 0; turn < turns; ++turn) copy_body(turn, turn + 1 == turns, code);
+    return add_block(std::move(code), next != kNoBlock ? next : BlockId(draft_.blocks.size()) + 1);
   }
 
   // Puts the copies before the loop, with tests around them: first copies of four turns, then of two, then

@@ -142,3 +142,25 @@ TEST_CASE("nothing moves across a division that rounds correctly, and a loop wit
   const std::string quick = shaped(std::string(body).replace(body.find("div.rn"), 6, "mul.rn"), room);
   CHECK(quick.find("mul.rn.f32") > quick.rfind("ld.global"));
 }
+
+TEST_CASE("loads are issued together, in their order, as far as an assembler's few registers allow") {
+  std::string loads, sums;
+  for (int i = 0; i < 60; ++i) {
+    const std::string f = "%x" + std::to_string(i);
+    loads += "ld.global.f32 " + f + ",[%rd2+" + std::to_string(4 * i) + "];\n";
+    sums += "fma.rn.f32 %f0,%f0,%f0," + f + ";\n";
+  }
+  const std::string text =
+      shaped(".reg .f32 %x<64>;mov.u64 %rd1,room;mad.wide.u32 %rd2,%lane,4,%rd1;mov.f32 %f0,0f00000000;\n" +
+                 loads + sums + "mov.b32 %out,%f0;\n",
+             ".global .align 4 .f32 room[128];\n");
+  const std::string first = text.substr(0, text.find("fma.rn.f32"));
+  CHECK(count(first, "ld.global") >= 16);
+  CHECK(count(first, "ld.global") <= 29);
+  CHECK(count(text, "ld.global") == 60);
+  CHECK(count(text, "ld.local") == 0);
+  for (int i = 1; i < 60; ++i) {
+    const auto at = [&](int k) { return text.find("+" + std::to_string(4 * k) + "]"); };
+    if (i > 1) CHECK(at(i - 1) < at(i));
+  }
+}

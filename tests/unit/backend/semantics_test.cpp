@@ -84,6 +84,13 @@ TEST_CASE("Programs that are relieved of values keep their stores") {
   }
 }
 
+TEST_CASE("Programs that are scheduled like an assembler does keep their stores") {
+  for (uint32_t seed = 700; seed <= 760; ++seed) {
+    const Shape shape{.statements = 80, .values = int(4 + seed % 24), .calls = seed % 3 == 0};
+    check_same(seed, shape, {.max_registers = 8 + seed * 5 % 240, .slow_paths_end_runs = true});
+  }
+}
+
 TEST_CASE("A spilled guard keeps one name from a guarded write to the store behind it") {
   // Seed 18 found this fault: when each instruction reloaded the guard, the written temporary looked live
   // from the entry on, and many of them left no register.
