@@ -126,7 +126,7 @@ struct LoadOptions {
   // Scene::motion is wanted. Skins and morph targets of a glTF file are then read, too, and a file is in its
   // pose at time 0.
   bool moving = false;
-  std::string animation;  // name or number of the glTF animation to play; empty: the first one
+  std::string animation = {};  // name or number of the glTF animation to play; empty: the first one
 };
 
 struct SceneInfo {

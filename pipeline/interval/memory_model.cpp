@@ -137,7 +137,7 @@ Cycle MemoryModel::change(uint32_t core_index, Address line, uint8_t sectors, ui
   Slice& slice = slices_[index];
   if (const uint32_t slot = slice.l2.tags.find(line); slot != mem::TagArray::kNone)
     slice.l2.tags.line(slot).dirty |= sectors;
-  return done + Cycle(turns) * params_.l2.atomic_interval;
+  return done + Cycle(double(turns) * params_.l2.atomic_interval);
 }
 
 void MemoryModel::begin_launch(bool cold) {

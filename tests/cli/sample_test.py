@@ -37,6 +37,7 @@ class Sampling(GlintTest):
         metrics = self.glint("stats", "a", "--format", "metrics").stdout
         self.assertIn(f"{statistics['gpu.sample.cycles']:.6g}", metrics)
         self.assertIn("gpu.sample.*", metrics)
+        self.expect(2, ["timed only a sample of its launch", "without --sample-pixels"], "model", "a")
 
     def test_a_whole_run_in_the_same_folder_leaves_no_sample_behind(self):
         self.sample("a")

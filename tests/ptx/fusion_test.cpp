@@ -160,7 +160,8 @@ TEST_CASE("loads are issued together, in their order, as far as an assembler's f
   CHECK(count(text, "ld.global") == 60);
   CHECK(count(text, "ld.local") == 0);
   for (int i = 1; i < 60; ++i) {
-    const auto at = [&](int k) { return text.find("+" + std::to_string(4 * k) + "]"); };
+    const auto at = [&](int k) { return text.find(" + " + std::to_string(4 * k) + "]"); };
+    REQUIRE(at(i) != std::string::npos);
     if (i > 1) CHECK(at(i - 1) < at(i));
   }
 }

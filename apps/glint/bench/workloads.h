@@ -32,10 +32,10 @@ const WorkloadInfo& find_workload(const std::string& name);
 // Names a workload as the paper does: SHIP_SH. One with frames ends in _MOTION. A compute program has its own
 // name alone.
 struct NamedWorkload {
-  std::string_view scene;   // "SHIP", or "bfs"
-  std::string_view shader;  // "sh", or "" for a compute program
-  bool in_subset = false;   // It is in the paper's Table 2.
-  std::string_view frames;  // "0:7", as the option --frames names them; "": it is one still frame
+  std::string_view scene;        // "SHIP", or "bfs"
+  std::string_view shader;       // "sh", or "" for a compute program
+  bool in_subset = false;        // It is in the paper's Table 2.
+  std::string_view frames = {};  // "0:7", as the option --frames names them; "": it is one still frame
   uint64_t num_frames = 1;
   bool is_program() const { return shader.empty(); }
   std::string name() const;
@@ -60,7 +60,7 @@ std::vector<NamedWorkload> select_workloads(const std::vector<std::string>& name
 // Holds scene and shader set of a name like SHIP_SH. Every scene may stand with every set. The names of
 // lumibench_motion() have frames, too.
 struct SceneAndShader {
-  std::string scene, shader, frames;
+  std::string scene, shader, frames = {};
 };
 std::optional<SceneAndShader> split_workload(const std::string& name);
 

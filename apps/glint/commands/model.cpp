@@ -125,8 +125,10 @@ bool takes_interval(const Runs& runs) {
   for (const auto& [workload, directory] : runs) {
     const std::string why = why_not_relaunched(report::RunRecord::read(directory));
     if (why.empty()) continue;
-    fmt::print(stderr, "note: the interval model runs launches again, and of {} {}: it is left out\n",
-               directory, why);
+    fmt::print(
+        stderr,
+        "note: the interval model runs launches again, which it cannot for {}, because {}: it is left out\n",
+        directory, why);
     return false;
   }
   return true;
@@ -180,6 +182,10 @@ Exit model(const Session& session, const ModelOptions& options) {
   Runs runs;
   for (const std::string& folder : options.runs)
     for (const auto& run : finished_runs(folder)) runs.push_back(run);
+  for (const auto& [workload, directory] : runs)
+    if (report::RunRecord::read(directory).fact("sample.share"))
+      throw UserError({directory}, "the run timed only a sample of its launch, and models predict whole ones",
+                      "run it again without --sample-pixels");
   const report::ModelTable models = models_of(session, options, runs);
   write_output(out, report::model_csv(models));
   if (out == "-") return Exit::Ok;

@@ -107,7 +107,7 @@ void relaunch_kernels(const std::string& file, const pipeline::GpuParams& gpu, c
 
 std::string why_not_relaunched(const report::RunRecord& run) {
   const std::string form = run.text("scene.form");
-  if (run.fact("sequence.fps")) return "frames of a scene that moves cannot be made anew";
+  if (run.fact("sequence.fps")) return "its scene moves from frame to frame";
   if (run.fact("rays.bounces") || form == "compute") return "";
   if (form != "pipeline" && form != "kernel")
     return "runs of " + (form.empty() ? "this kind" : form) + " cannot be made anew";
