@@ -36,7 +36,8 @@ struct BackendOptions {
   // shaders of each trace. Without them a shader's call of reorderThread is nothing.
   bool reorder_calls = false, reorder_traces = false;
   // With true, the scheduler moves nothing across an op that hardware finishes by a call for rare operands
-  // (backend/slow_paths.h), since the call ends a block of its assembler.
+  // (backend/slow_paths.h), since the call ends a block of its assembler, and it keeps a run of instructions
+  // within the few registers that this assembler takes, where the run fits (backend/schedule.h).
   bool slow_paths_end_runs = false;
 };
 
