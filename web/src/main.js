@@ -25,7 +25,7 @@ import * as traversal from "./figures/traversal.js";
 import { labelRuns, Run } from "./model.js";
 import { failed } from "./packed.js";
 import { bounds } from "./sections/bounds.js";
-import { deltas, means } from "./sections/compare.js";
+import { comparable, deltas, means } from "./sections/compare.js";
 import { heat } from "./sections/heat.js";
 import { keys } from "./sections/keys.js";
 import { metrics } from "./sections/metrics.js";
@@ -57,9 +57,10 @@ function section(id, title, lead, ...content) {
 function sectionsOf(data, runs) {
   if (runs.length === 0) return [overviewOfSuites(data)];
   const figures = (...list) => figuresOf(list.map((one) => ofRuns(one, runs)), runs);
+  const compared = comparable(runs, data.collections);
   return [
     overview(runs),
-    section("comparison", "Comparison", null, means(runs), figures(ipc), deltas(runs, data.metric_docs)),
+    section("comparison", "Comparison", null, means(compared), figuresOf([ofRuns(ipc, compared)], compared), deltas(compared, data.metric_docs)),
     section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
     section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
     section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opCycles, opLatency), missing(runs, "profile", "--profile")),

@@ -9,6 +9,15 @@ const kWide = 2; // pairs; with more, paper has room for the changes only
 const kFewRuns = 4; // runs that may be compared with the first without any work in common
 const kOfTheHost = "sim_rate"; // It says nothing of the machine that is simulated.
 
+// Returns the runs that can be compared. A run of several launches or frames is their sum, so it is compared with other whole runs, and its parts are
+// compared with each other where there is no other whole run.
+export function comparable(runs, collections) {
+  const parts = new Set((collections ?? []).filter(({ kind }) => kind === "launches" || kind === "frames").flatMap(({ points }) => points.map(({ directory }) => directory)));
+  const isPart = (run) => parts.has(run.data.directory);
+  const wholes = runs.filter((run) => !isPart(run));
+  return parts.size && wholes.length === 1 ? runs.filter(isPart) : wholes;
+}
+
 // Returns the speed-up of each configuration over the first, over the workloads that both have.
 export function means(runs) {
   const configs = [...new Set(runs.map((run) => run.configLabel))];
