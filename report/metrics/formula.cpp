@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "report/metrics/compare_samples.h"
 
 namespace glint::report {
 namespace {
@@ -161,7 +162,7 @@ std::optional<double> evaluate(const std::string& formula, const RunRecord& run)
 }
 
 std::string why_absent(const RunRecord& run) {
-  if (run.fact("sample.share")) return "this run is a sample; its estimates are the statistics gpu.sample.*";
+  if (is_sampled(run)) return "this run is a sample; its estimates are the statistics gpu.sample.*";
   return run.text("mode") == "functional"
              ? "only the timing machine counts it, or there is nothing to divide by"
              : "there is nothing to divide by, or this run did not count it";

@@ -21,6 +21,7 @@
 #include "report/files/csv_table.h"
 #include "report/files/run_directory.h"
 #include "report/files/run_record.h"
+#include "report/metrics/compare_samples.h"
 #include "report/terminal/progress.h"
 
 namespace glint::app {
@@ -183,7 +184,7 @@ Exit model(const Session& session, const ModelOptions& options) {
   for (const std::string& folder : options.runs)
     for (const auto& run : finished_runs(folder)) runs.push_back(run);
   for (const auto& [workload, directory] : runs)
-    if (report::RunRecord::read(directory).fact("sample.share"))
+    if (report::is_sampled(report::RunRecord::read(directory)))
       throw UserError({directory}, "the run timed only a sample of its launch, and models predict whole ones",
                       "run it again without --sample-pixels");
   const report::ModelTable models = models_of(session, options, runs);

@@ -51,8 +51,7 @@ void check_sampled(const RunOptions& options) {
   if (options.launch.sample.wanted() && options.scene.sequence.is_wanted())
     throw UserError({}, "--sample-pixels cannot be used with --frames",
                     "sample one frame, or run the sequence whole");
-  if (options.launch.sample.wanted() && (names_script(what) || names_pipeline(what) || names_kernel(what) ||
-                                         names_program(what) || names_capsule(what)))
+  if (options.launch.sample.wanted() && !is_scene(what))
     throw UserError({}, fmt::format("--sample-pixels belongs to scenes, and '{}' is none", what),
                     "leave it away to run the whole launch");
 }
