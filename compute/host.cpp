@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <optional>
 #include <utility>
-
-#include "base/regular_file.h"
 
 namespace glint::compute {
 namespace {
@@ -20,57 +17,25 @@ constexpr double kContractTolerance = 1e-3;
 
 }  // namespace
 
-struct Host::Kernel {
-  Kernel(pipeline::CompiledStage stage, const HostSetup& setup)
-      : shaders({stage.program}, stage.reflection.bindings, setup.gpu, setup.cache) {}
-  pipeline::LinkedShaders shaders;
-};
-
-Host::Host(HostSetup setup) : setup_(std::move(setup)), device_(setup_.gpu) {
+Host::Host(HostSetup setup, Form form) : setup_(std::move(setup)), form_(form), device_(setup_.gpu) {
   setup_.mode.caches = pipeline::Caches::Warm;
 }
 
 Host::~Host() = default;
 
-const Host::Kernel& Host::kernel(const std::string& name) {
+Kernel& Host::kernel(const std::string& name) {
   std::unique_ptr<Kernel>& kernel = kernels_[name];
-  if (kernel) return *kernel;
-  const std::string file = setup_.kernels + "/" + name + ".comp";
-  frontend::GlslOptions glsl;
-  glsl.cache = setup_.cache;
-  Diagnostics notes;
-  pipeline::StageSource source{file, "", {}, frontend::Validity::Known};
-  kernel = std::make_unique<Kernel>(pipeline::compile_stage(frontend::spirv_of_file(file, glsl), source,
-                                                            setup_.gpu.compiler, notes, setup_.cache),
-                                    setup_);
+  if (!kernel) kernel = compile_kernel(setup_.kernels + "/" + name, form_, setup_.gpu, setup_.cache, memory_);
   return *kernel;
 }
 
 void Host::launch(const std::string& name, const std::array<uint32_t, 3>& groups,
                   const std::vector<pipeline::BufferRange>& buffers, std::span<const std::byte> constants) {
-  pipeline::LaunchBuilder builder(kernel(name).shaders, memory_);
-  for (uint32_t i = 0; i < buffers.size(); ++i) builder.bind_buffers({0, i}, {buffers[i]});
-  builder.set_push_constants(constants);
-  builder.set_blocks(0, groups);
-  builder.world.on_fault = setup_.on_fault;
-  builder.world.prints = setup_.prints;
-  run(name, groups, builder.finish());
-  for (const Address at : builder.allocations()) memory_.free(at);
-}
-
-void Host::launch_ptx(const std::string& name, const pipeline::KernelGrid& grid,
-                      const std::vector<std::vector<std::byte>>& arguments) {
-  const std::string file = setup_.kernels + "/" + name + ".ptx";
-  const std::optional<std::string> text = read_regular_file(file);
-  if (!text) throw UserError({file}, "the kernel cannot be read");
-  const frontend::PtxOptions options{.backend = pipeline::backend_options(setup_.gpu.compiler)};
-  pipeline::KernelWorld kernel(frontend::compile_ptx(*text, file, "", options));
-  kernel.world.memory = &memory_;
-  kernel.world.layout = setup_.gpu.core.layout.make({});
-  kernel.world.on_fault = setup_.on_fault;
-  kernel.set_grid(grid);
-  kernel.set_arguments(arguments);
-  run(name, grid.grid, kernel.world);
+  kernel(name).launch({groups, buffers, constants}, [&](exec::World& world) {
+    world.on_fault = setup_.on_fault;
+    world.prints = setup_.prints;
+    run(name, groups, world);
+  });
 }
 
 void Host::run(const std::string& kernel, const std::array<uint32_t, 3>& groups, const exec::World& world) {
@@ -104,7 +69,7 @@ void Host::wrong(const std::string& name, size_t index, double got, double expec
 }
 
 ProgramResult run_program(const Program& program, Size size, HostSetup setup) {
-  Host host(std::move(setup));
+  Host host(std::move(setup), program.form);
   ProgramResult out;
   try {
     program.run(host, size);

@@ -13,10 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "compute/kernel.h"
 #include "compute/program.h"
 #include "pipeline/device.h"
-#include "pipeline/kernel_launch.h"
-#include "pipeline/launch_builder.h"
 
 namespace glint::compute {
 
@@ -74,13 +73,14 @@ class Random {
 // A program is written as it would be against a driver:
 //
 //   const Buffer<float> values = host.buffer("values", input);         // stays between launches
-//   host.launch("scale", {groups, 1, 1}, {values}, Constants{2.0f});   // kernels/scale.comp, bindings 0, 1,
-//   .. host.check("scaled", values, expected);                            // throws at the first wrong value
+//   host.launch("scale", {groups, 1, 1}, {values}, Constants{2.0f});   // kernels/scale.comp or scale.ptx
+//   host.check("scaled", values, expected);                            // throws at the first wrong value
 //
 // Launches share the memory, and the L2 stays warm between them.
 class Host {
  public:
-  explicit Host(HostSetup setup);
+  // Launches kernels of that form.
+  explicit Host(HostSetup setup, Form form = Form::Glsl);
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
@@ -89,21 +89,21 @@ class Host {
 
   template <class T>
   Buffer<T> buffer(const std::string& name, size_t count) {
-    return {memory_.allocate(name, count * sizeof(T)), count};
+    return {memory_->allocate(name, count * sizeof(T)), count};
   }
   template <class T>
   Buffer<T> buffer(const std::string& name, const std::vector<T>& values) {
     const Buffer<T> out = buffer<T>(name, values.size());
-    memory_.write(out.address, values.data(), values.size() * sizeof(T));
+    memory_->write(out.address, values.data(), values.size() * sizeof(T));
     return out;
   }
   // Returns what a buffer holds, for reading and writing between launches.
   template <class T>
   std::span<T> view(const Buffer<T>& buffer) const {
-    return memory_.view<T>(buffer.address, buffer.count);
+    return memory_->view<T>(buffer.address, buffer.count);
   }
 
-  // Runs NAME.comp with the buffers at binding 0 and following of set 0, and with these push constants.
+  // Runs the kernel of that name with these buffers and constants (compile_kernel()).
   template <class Constants>
   void launch(const std::string& kernel, const std::array<uint32_t, 3>& groups,
               const std::vector<pipeline::BufferRange>& buffers, const Constants& constants) {
@@ -111,11 +111,6 @@ class Host {
   }
   void launch(const std::string& kernel, const std::array<uint32_t, 3>& groups,
               const std::vector<pipeline::BufferRange>& buffers, std::span<const std::byte> constants);
-
-  // Runs the kernel of NAME.ptx, with the bytes of each argument (KernelWorld::argument()). The kernel's
-  // module has no variables.
-  void launch_ptx(const std::string& kernel, const pipeline::KernelGrid& grid,
-                  const std::vector<std::vector<std::byte>>& arguments);
 
   // Throws WrongResult at the first value that is not the expected one. Integers are to be equal. A float may
   // differ by `tolerance` times the larger of 1 and its magnitude; without tolerance it is to be equal,
@@ -137,15 +132,15 @@ class Host {
   pipeline::RenderResult take_result() { return std::move(sum_); }
 
  private:
-  struct Kernel;
-  const Kernel& kernel(const std::string& name);
+  Kernel& kernel(const std::string& name);
   void run(const std::string& kernel, const std::array<uint32_t, 3>& groups, const exec::World& world);
   void check_count(const std::string& name, size_t got, size_t expected);
   bool is_near(double got, double expected, bool exact, double tolerance) const;
   [[noreturn]] static void wrong(const std::string& name, size_t index, double got, double expected);
 
   HostSetup setup_;
-  mem::AddressSpace memory_;
+  Form form_;
+  std::shared_ptr<mem::AddressSpace> memory_ = std::make_shared<mem::AddressSpace>();
   pipeline::Device device_;
   std::map<std::string, std::unique_ptr<Kernel>> kernels_;
   std::vector<LaunchRecord> launches_;

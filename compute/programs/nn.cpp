@@ -25,9 +25,9 @@ struct Target {
   uint32_t records;
 };
 
-// Makes the records, calls `launch` with their places and the distances to fill, and checks these.
-template <class Launch>
-void find_nearest(Host& host, Size size, const Launch& launch) {
+}  // namespace
+
+void nn(Host& host, Size size) {
   const Target target{30, 90, size == Size::Full ? 42'764u : 4'096u};
   std::vector<float> places, expected;
   for (uint32_t i = 0; i < target.records; ++i) {
@@ -37,29 +37,11 @@ void find_nearest(Host& host, Size size, const Launch& launch) {
     expected.push_back(std::sqrt(x * x + y * y));
   }
   const auto distances = host.buffer<float>("distances", target.records);
-  launch(target, host.buffer("places", places), distances);
+  host.launch("nn", {groups_of(target.records, 256), 1, 1}, {host.buffer("places", places), distances},
+              target);
   host.check("distances", distances, expected);
   const std::vector<uint32_t> found = least(host.view(distances), 5);
   host.check("nearest", host.buffer("nearest", found), least(expected, 5));
-}
-
-}  // namespace
-
-void nn(Host& host, Size size) {
-  find_nearest(host, size,
-               [&](const Target& target, const Buffer<float>& places, const Buffer<float>& distances) {
-                 host.launch("nn", {groups_of(target.records, 256), 1, 1}, {places, distances}, target);
-               });
-}
-
-void nn_ptx(Host& host, Size size) {
-  find_nearest(host, size,
-               [&](const Target& target, const Buffer<float>& places, const Buffer<float>& distances) {
-                 const auto bytes = [](auto value) { return pipeline::KernelWorld::argument(value); };
-                 host.launch_ptx("nn", {{groups_of(target.records, 256), 1, 1}, {256, 1, 1}, 0},
-                                 {bytes(places.address), bytes(distances.address), bytes(target.latitude),
-                                  bytes(target.longitude), bytes(target.records)});
-               });
 }
 
 }  // namespace glint::compute

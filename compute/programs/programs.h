@@ -14,7 +14,6 @@ void kmeans(Host& host, Size size);
 void lavamd(Host& host, Size size);
 void lud(Host& host, Size size);
 void nn(Host& host, Size size);
-void nn_ptx(Host& host, Size size);
 void nw(Host& host, Size size);
 void pathfinder(Host& host, Size size);
 void srad(Host& host, Size size);

@@ -25,6 +25,10 @@ void write_wrong(compute::Host& host, compute::Size) {
   host.check("values", values, std::vector<float>{1, 2, 3.5f}, 1e-3);
 }
 
+void launch_saxpy(compute::Host& host, compute::Size) {
+  host.launch("saxpy", {1, 1, 1}, {}, uint32_t{1});
+}
+
 }  // namespace
 
 TEST_CASE("every program computes its reference's values on both machines, with the same instructions") {
@@ -40,6 +44,33 @@ TEST_CASE("every program computes its reference's values on both machines, with 
       CHECK(timed.launches[i].cycles > 0);
     }
   }
+}
+
+TEST_CASE("the suite has thirteen programs in GLSL, and a form in PTX is another row with the same host") {
+  size_t suite = 0, ptx = 0;
+  for (const compute::Program& program : compute::all_programs()) {
+    INFO(program.name);
+    if (program.form == compute::Form::Glsl) {
+      ++suite;
+      CHECK((compute::find_program(program.name + "-ptx") != nullptr) == program.has_ptx);
+      continue;
+    }
+    ++ptx;
+    const compute::Program* glsl = compute::find_program(program.name.substr(0, program.name.size() - 4));
+    REQUIRE(glsl);
+    CHECK(glsl->run == program.run);
+    CHECK(glsl->full_input == program.full_input);
+  }
+  CHECK(suite == 13);
+  CHECK(ptx == 6);
+}
+
+TEST_CASE("a PTX kernel that does not say how large its blocks are is refused") {
+  compute::HostSetup setup = setup_of(false);
+  setup.kernels = GLINT_SOURCE_DIR "/shaders/kernels";
+  const compute::Program program{"saxpy", "", "", "", 1, 1, 0, launch_saxpy, true, compute::Form::Ptx};
+  CHECK_THROWS_WITH(compute::run_program(program, compute::Size::Small, setup),
+                    Catch::Contains("the kernel does not say how many threads its blocks have"));
 }
 
 TEST_CASE("a value that is not the reference's is told with its place and both numbers") {

@@ -48,7 +48,7 @@ std::string nearest_in_any_case(const std::string& name, const std::vector<std::
 bool is_called(const NamedWorkload& workload, const std::string& name) {
   if (workload.is_program())
     return name == upper(workload.scene) ||
-           (name == "COMPUTE" && !compute::find_program(workload.scene)->is_variant);
+           (name == "COMPUTE" && compute::find_program(workload.scene)->form == compute::Form::Glsl);
   if (!workload.frames.empty()) return name == "LUMIBENCH-MOTION" || name == workload.name();
   return name == "LUMIBENCH" || (name == "SUBSET" && workload.in_subset) || name == workload.scene ||
          name == upper(workload.shader) || name == workload.name();
