@@ -3,6 +3,7 @@
 #include "report/files/stat_rows.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <fmt/format.h>
 #include <map>
@@ -26,6 +27,8 @@ class PathVisitor : public stats::Visitor {
   }
 
  protected:
+  // Returns the path of the group that is being visited, with a dot at its end.
+  std::string_view prefix() const { return prefix_; }
   std::string path_of(const stats::Stat& stat) const { return prefix_ + std::string(stat.name()); }
 
  private:
@@ -141,32 +144,70 @@ class TotalVisitor final : public PathVisitor {
 
 class SumVisitor final : public PathVisitor {
  public:
-  explicit SumVisitor(const std::string& pattern) : pattern_(pattern) {}
+  explicit SumVisitor(std::string_view pattern) : pattern_(pattern) {}
   std::optional<double> sum;
+
+  // A star does not cross a dot, so nothing matches in a group whose path is unlike the pattern's beginning.
+  void enter(const stats::Group& group) override {
+    if (unlike_ == 0) {
+      PathVisitor::enter(group);
+      if (path_matches(beginning_of(pattern_, parts_of(prefix())), prefix())) return;
+    }
+    ++unlike_;
+  }
+  void leave(const stats::Group& group) override {
+    if (unlike_ > 0) --unlike_;
+    if (unlike_ == 0) PathVisitor::leave(group);
+  }
 
   void visit(const stats::Counter& stat) override { add(stat, double(stat.value())); }
   void visit(const stats::Ratio& stat) override { add(stat, stat.value()); }
   void visit(const stats::Value& stat) override { add(stat, stat.value()); }
   void visit(const stats::Histogram&) override {}
   void visit(const stats::BreakdownBase& stat) override {
+    if (unlike_ > 0) return;
     for (const auto& [name, count] : stat.parts()) add(stat, double(count), "::" + std::string(name));
   }
 
  private:
-  void add(const stats::Stat& stat, double value, const std::string& part = {}) {
-    if (path_matches(pattern_, path_of(stat) + part)) sum = sum.value_or(0.0) + value;
+  static ptrdiff_t parts_of(std::string_view prefix) { return std::count(prefix.begin(), prefix.end(), '.'); }
+  // Returns the pattern up to its n-th dot.
+  static std::string_view beginning_of(std::string_view pattern, ptrdiff_t n) {
+    size_t end = 0;
+    for (; n > 0; --n) {
+      const size_t dot = pattern.find('.', end);
+      if (dot == std::string_view::npos) return pattern;
+      end = dot + 1;
+    }
+    return pattern.substr(0, end);
   }
-  const std::string& pattern_;
+  void add(const stats::Stat& stat, double value, const std::string& part = {}) {
+    if (unlike_ == 0 && path_matches(pattern_, path_of(stat) + part)) sum = sum.value_or(0.0) + value;
+  }
+  std::string_view pattern_;
+  size_t unlike_ = 0;  // groups around the place that is visited that cannot match
 };
 
 }  // namespace
 
+// Where a star has taken too little, only the last one can take more: what an earlier one took is the least
+// that reaches the text between them, and a later place would leave the last one no more to choose from.
 bool path_matches(std::string_view pattern, std::string_view path) {
-  if (pattern.empty()) return path.empty();
-  if (pattern[0] == '*')
-    return path_matches(pattern.substr(1), path) ||
-           (!path.empty() && path[0] != '.' && path_matches(pattern, path.substr(1)));
-  return !path.empty() && pattern[0] == path[0] && path_matches(pattern.substr(1), path.substr(1));
+  size_t at = 0, star = std::string_view::npos, taken = 0;  // `taken`: the end of what the last star takes
+  for (size_t i = 0; i < path.size();) {
+    if (at < pattern.size() && pattern[at] == '*') {
+      star = at++;
+      taken = i;
+    } else if (at < pattern.size() && pattern[at] == path[i]) {
+      ++at, ++i;
+    } else if (star != std::string_view::npos && path[taken] != '.') {
+      at = star + 1;
+      i = ++taken;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', at) == std::string_view::npos;
 }
 
 std::vector<StatRow> stat_rows(const stats::Group& root) {

@@ -92,6 +92,39 @@ TEST_CASE(
   CHECK(stat_sum(tree.root, "gpu.l1.cycles::idle") == 9.0);
   CHECK_FALSE(stat_sum(tree.root, "gpu.l2.accesses").has_value());
   CHECK_FALSE(stat_sum(tree.root, "gpu.*accesses").has_value());  // a star does not cross a dot
+  CHECK_FALSE(stat_sum(tree.root, "gpu").has_value());
+  CHECK(stat_sum(tree.root, "*.l1*.*") == stat_sum(tree.root, "gpu.l1*.*"));
+}
+
+// Says what path_matches() says, letter by letter.
+bool matches_by_trial(std::string_view pattern, std::string_view path) {
+  if (pattern.empty()) return path.empty();
+  if (pattern[0] == '*')
+    return matches_by_trial(pattern.substr(1), path) ||
+           (!path.empty() && path[0] != '.' && matches_by_trial(pattern, path.substr(1)));
+  return !path.empty() && pattern[0] == path[0] && matches_by_trial(pattern.substr(1), path.substr(1));
+}
+
+// Returns all texts of up to `longest` letters.
+std::vector<std::string> texts_of(std::string_view letters, size_t longest) {
+  std::vector<std::string> out = {""};
+  for (size_t i = 0; i < out.size() && out[i].size() < longest; ++i)
+    for (const char letter : letters) out.push_back(out[i] + letter);
+  return out;
+}
+
+TEST_CASE("a pattern matches the paths that trying every length of each star finds") {
+  size_t wrong = 0, matched = 0;
+  for (const std::string& pattern : texts_of("ab.*", 5))
+    for (const std::string& path : texts_of("ab.", 5)) {
+      const bool expected = matches_by_trial(pattern, path);
+      matched += expected;
+      if (path_matches(pattern, path) == expected) continue;
+      UNSCOPED_INFO(pattern + " on " + path);
+      ++wrong;
+    }
+  CHECK(wrong == 0);
+  CHECK(matched > 1'000);
 }
 
 }  // namespace
