@@ -15,6 +15,26 @@ namespace {
 constexpr uint32_t kSphereSlices = 32;  // slices of a sphere in LumiBench's application
 constexpr uint32_t kSphereStacks = 16;
 
+// Returns the triangles of a sphere with all of its vertices but their positions.
+Model unit_sphere() {
+  Model model;
+  for (uint32_t j = 0; j <= kSphereStacks; ++j) {
+    const double polar = std::numbers::pi * j / kSphereStacks;
+    for (uint32_t i = 0; i <= kSphereSlices; ++i) {
+      const double azimuth = 2 * std::numbers::pi * i / kSphereSlices;
+      const Vec3 normal{sine(polar) * sine(azimuth), cosine(polar), sine(polar) * cosine(azimuth)};
+      add_vertex(model, {}, normal, 0, {float(i) / kSphereSlices, float(j) / kSphereStacks});
+    }
+  }
+  for (uint32_t j = 0; j < kSphereStacks; ++j)
+    for (uint32_t i = 0; i < kSphereSlices; ++i) {
+      const uint32_t a = j * (kSphereSlices + 1) + i, b = a + kSphereSlices + 1;
+      add_triangle(model, a, b, b + 1);
+      add_triangle(model, a, b + 1, a + 1);
+    }
+  return model;
+}
+
 }  // namespace
 
 Vec3 normalized(const Vec3& v) {
@@ -75,27 +95,17 @@ void add_triangle(Model& model, uint32_t a, uint32_t b, uint32_t c) {
 }
 
 Model make_sphere(std::string name, const Vec3& center, float radius, int32_t material) {
+  static const Model unit = unit_sphere();
   Model model;
   model.name = std::move(name);
   model.center = center;
   model.radius = radius;
-  model.vertices.reserve((kSphereStacks + 1) * (kSphereSlices + 1));
-  model.indices.reserve(kSphereStacks * kSphereSlices * 6);
-  for (uint32_t j = 0; j <= kSphereStacks; ++j) {
-    const double polar = std::numbers::pi * j / kSphereStacks;
-    for (uint32_t i = 0; i <= kSphereSlices; ++i) {
-      const double azimuth = 2 * std::numbers::pi * i / kSphereSlices;
-      const Vec3 normal{sine(polar) * sine(azimuth), cosine(polar), sine(polar) * cosine(azimuth)};
-      add_vertex(model, center + normal * radius, normal, material,
-                 {float(i) / kSphereSlices, float(j) / kSphereStacks});
-    }
+  model.indices = unit.indices;
+  model.vertices = unit.vertices;
+  for (Vertex& vertex : model.vertices) {
+    vertex.position = center + vertex.normal * radius;
+    vertex.material = material;
   }
-  for (uint32_t j = 0; j < kSphereStacks; ++j)
-    for (uint32_t i = 0; i < kSphereSlices; ++i) {
-      const uint32_t a = j * (kSphereSlices + 1) + i, b = a + kSphereSlices + 1;
-      add_triangle(model, a, b, b + 1);
-      add_triangle(model, a, b + 1, a + 1);
-    }
   return model;
 }
 

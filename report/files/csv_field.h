@@ -1,6 +1,7 @@
 // Writes a field of comma-separated values, and reads one as a number.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -9,13 +10,24 @@
 
 namespace glint::report {
 
-// Returns a field as RFC 4180 writes it: a field with a comma, quote or newline is quoted, and its quotes are
+// Appends a field as RFC 4180 writes it: a field with a comma, quote or newline is quoted, and its quotes are
 // doubled.
-inline std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
+inline void append_csv_field(std::string& out, std::string_view text) {
+  const bool is_plain = std::ranges::none_of(text, [](char c) { return c == ',' || c == '"' || c == '\n'; });
+  if (is_plain) {
+    out += text;
+    return;
+  }
+  out += '"';
+  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
+  out += '"';
+}
+
+// Returns a field as append_csv_field() writes it.
+inline std::string csv_field(std::string_view text) {
+  std::string out;
+  append_csv_field(out, text);
+  return out;
 }
 
 // Returns the whole text as a number, or nullopt when it is not a finite number.

@@ -19,7 +19,7 @@ class PathVisitor : public stats::Visitor {
  public:
   void enter(const stats::Group& group) override {
     lengths_.push_back(prefix_.size());
-    prefix_ += group.name() + ".";
+    prefix_.append(group.name()).append(".");
   }
   void leave(const stats::Group&) override {
     prefix_.resize(lengths_.back());
@@ -27,20 +27,31 @@ class PathVisitor : public stats::Visitor {
   }
 
  protected:
-  // Returns the path of the group that is being visited, with a dot at its end.
-  std::string_view prefix() const { return prefix_; }
-  std::string path_of(const stats::Stat& stat) const { return prefix_ + std::string(stat.name()); }
+  // Returns the path of a statistic, or that of one of its parts.
+  std::string path_of(const stats::Stat& stat, std::string_view part = {}) const {
+    std::string path;
+    path.reserve(prefix_.size() + stat.name().size() + part.size() + 2);
+    path.append(prefix_).append(stat.name());
+    if (!part.empty()) path.append("::").append(part);
+    return path;
+  }
 
  private:
   std::string prefix_;
   std::vector<size_t> lengths_;
 };
 
+// Returns the number in decimal. Most statistics are counts, and this is the cheapest way to write one.
+std::string decimal(uint64_t value) {
+  const fmt::format_int text(value);
+  return {text.data(), text.size()};
+}
+
 class RowVisitor final : public PathVisitor {
  public:
   std::vector<StatRow> rows;
 
-  void visit(const stats::Counter& stat) override { add(stat, "", fmt::format("{}", stat.value())); }
+  void visit(const stats::Counter& stat) override { add(stat, "", decimal(stat.value())); }
   void visit(const stats::Ratio& stat) override { add(stat, "", fmt::format("{}", stat.value())); }
   void visit(const stats::Value& stat) override { add(stat, "", fmt::format("{}", stat.value())); }
   void visit(const stats::Histogram& stat) override {
@@ -49,21 +60,19 @@ class RowVisitor final : public PathVisitor {
       if (stat.counts()[i] == 0) continue;  // There can be hundreds of empty bins, so these are left out.
       const uint64_t low = bins.low + i * bins.step;
       const bool last = i + 1 == stat.counts().size();
-      const std::string name = last             ? fmt::format("::{}+", low)
-                               : bins.step == 1 ? fmt::format("::{}", low)
-                                                : fmt::format("::{}-{}", low, low + bins.step - 1);
-      add(stat, name, fmt::format("{}", stat.counts()[i]));
+      const std::string name = last             ? fmt::format("{}+", low)
+                               : bins.step == 1 ? decimal(low)
+                                                : fmt::format("{}-{}", low, low + bins.step - 1);
+      add(stat, name, decimal(stat.counts()[i]));
     }
   }
   void visit(const stats::BreakdownBase& stat) override {
-    for (const auto& [name, count] : stat.parts())
-      add(stat, "::" + std::string(name), fmt::format("{}", count));
+    for (const auto& [name, count] : stat.parts()) add(stat, name, decimal(count));
   }
 
  private:
-  void add(const stats::Stat& stat, const std::string& part, std::string value) {
-    rows.push_back(
-        {path_of(stat) + part, std::move(value), std::string(stat.unit()), std::string(stat.doc())});
+  void add(const stats::Stat& stat, std::string_view part, std::string value) {
+    rows.push_back({path_of(stat, part), std::move(value), stat.unit(), stat.doc()});
   }
 };
 
@@ -83,7 +92,7 @@ std::string without_numbers(const std::string& path) {
 
 class NameVisitor final : public PathVisitor {
  public:
-  std::vector<StatRow> rows;
+  std::vector<StatName> rows;
 
   void visit(const stats::Counter& stat) override { add(stat); }
   void visit(const stats::Ratio& stat) override { add(stat); }
@@ -95,7 +104,7 @@ class NameVisitor final : public PathVisitor {
   void add(const stats::Stat& stat) {
     std::string path = without_numbers(path_of(stat));
     if (seen_.insert(path).second)
-      rows.push_back({std::move(path), "", std::string(stat.unit()), std::string(stat.doc())});
+      rows.push_back({std::move(path), std::string(stat.unit()), std::string(stat.doc())});
   }
   std::set<std::string> seen_;
 };
@@ -109,7 +118,7 @@ class TotalVisitor final : public PathVisitor {
   void visit(const stats::Value& stat) override { largest(stat, stat.value()); }
   void visit(const stats::Histogram&) override {}
   void visit(const stats::BreakdownBase& stat) override {
-    for (const auto& [name, count] : stat.parts()) total(stat, "::" + std::string(name)).sum += count;
+    for (const auto& [name, count] : stat.parts()) total(stat, name).sum += count;
   }
 
   std::vector<StatRow> rows() const {
@@ -123,14 +132,16 @@ class TotalVisitor final : public PathVisitor {
 
  private:
   struct Total {
-    std::string path, unit;
+    std::string path;
+    std::string_view unit;
     uint64_t sum = 0;
     std::optional<double> largest;  // set for a computed value
   };
-  Total& total(const stats::Stat& stat, const std::string& part) {
-    std::string path = without_numbers(path_of(stat)) + part;
+  Total& total(const stats::Stat& stat, std::string_view part) {
+    std::string path = without_numbers(path_of(stat));
+    if (!part.empty()) path.append("::").append(part);
     const auto [found, is_new] = index_.emplace(path, totals_.size());
-    if (is_new) totals_.push_back({std::move(path), std::string(stat.unit()), 0, std::nullopt});
+    if (is_new) totals_.push_back({std::move(path), stat.unit(), 0, std::nullopt});
     return totals_[found->second];
   }
   void largest(const stats::Stat& stat, double value) {
@@ -142,50 +153,49 @@ class TotalVisitor final : public PathVisitor {
   std::map<std::string, size_t> index_;
 };
 
-class SumVisitor final : public PathVisitor {
+// Sums what a pattern matches. A star stands for no dot, so each group on the way takes the pattern's parts
+// up to as many dots as the group's name adds to a path. Below a group that does not match, nothing is read.
+class SumVisitor final : public stats::Visitor {
  public:
-  explicit SumVisitor(std::string_view pattern) : pattern_(pattern) {}
+  explicit SumVisitor(std::string_view pattern) : rests_{pattern} {}
   std::optional<double> sum;
 
-  // A star does not cross a dot, so nothing matches in a group whose path is unlike the pattern's beginning.
-  void enter(const stats::Group& group) override {
-    if (unlike_ == 0) {
-      PathVisitor::enter(group);
-      if (path_matches(beginning_of(pattern_, parts_of(prefix())), prefix())) return;
-    }
-    ++unlike_;
-  }
-  void leave(const stats::Group& group) override {
-    if (unlike_ > 0) --unlike_;
-    if (unlike_ == 0) PathVisitor::leave(group);
-  }
-
-  void visit(const stats::Counter& stat) override { add(stat, double(stat.value())); }
-  void visit(const stats::Ratio& stat) override { add(stat, stat.value()); }
-  void visit(const stats::Value& stat) override { add(stat, stat.value()); }
+  void enter(const stats::Group& group) override { rests_.push_back(rest_below(group.name())); }
+  void leave(const stats::Group&) override { rests_.pop_back(); }
+  void visit(const stats::Counter& stat) override { add(stat); }
+  void visit(const stats::Ratio& stat) override { add(stat); }
+  void visit(const stats::Value& stat) override { add(stat); }
   void visit(const stats::Histogram&) override {}
   void visit(const stats::BreakdownBase& stat) override {
-    if (unlike_ > 0) return;
-    for (const auto& [name, count] : stat.parts()) add(stat, double(count), "::" + std::string(name));
+    if (!rests_.back() || !may_match_part(stat.name())) return;
+    for (const auto& [name, count] : stat.parts())
+      if (path_matches(*rests_.back(), std::string(stat.name()).append("::").append(name)))
+        add(double(count));
   }
 
  private:
-  static ptrdiff_t parts_of(std::string_view prefix) { return std::count(prefix.begin(), prefix.end(), '.'); }
-  // Returns the pattern up to its n-th dot.
-  static std::string_view beginning_of(std::string_view pattern, ptrdiff_t n) {
-    size_t end = 0;
-    for (; n > 0; --n) {
-      const size_t dot = pattern.find('.', end);
-      if (dot == std::string_view::npos) return pattern;
-      end = dot + 1;
-    }
-    return pattern.substr(0, end);
+  // Returns what of the pattern is left for the paths below a group, or nothing when no path there matches.
+  std::optional<std::string_view> rest_below(std::string_view name) const {
+    if (!rests_.back()) return std::nullopt;
+    const std::string_view pattern = *rests_.back();
+    size_t dot = pattern.find('.');
+    for (auto dots = std::ranges::count(name, '.'); dots > 0 && dot != std::string_view::npos; --dots)
+      dot = pattern.find('.', dot + 1);
+    if (dot == std::string_view::npos || !path_matches(pattern.substr(0, dot), name)) return std::nullopt;
+    return pattern.substr(dot + 1);
   }
-  void add(const stats::Stat& stat, double value, const std::string& part = {}) {
-    if (unlike_ == 0 && path_matches(pattern_, path_of(stat) + part)) sum = sum.value_or(0.0) + value;
+  // Tells whether the pattern's characters before its first star allow a part of the breakdown.
+  bool may_match_part(std::string_view name) const {
+    const std::string_view head = rests_.back()->substr(0, rests_.back()->find('*'));
+    return head.size() <= name.size() ? name.starts_with(head) : head.starts_with(name);
   }
-  std::string_view pattern_;
-  size_t unlike_ = 0;  // groups around the place that is visited that cannot match
+  template <class Stat>
+  void add(const Stat& stat) {
+    if (rests_.back() && path_matches(*rests_.back(), stat.name())) add(double(stat.value()));
+  }
+  void add(double value) { sum = sum.value_or(0.0) + value; }
+
+  std::vector<std::optional<std::string_view>> rests_;  // what is left of the pattern in each open group
 };
 
 }  // namespace
@@ -222,7 +232,7 @@ std::vector<StatRow> stat_totals(const stats::Group& root) {
   return visitor.rows();
 }
 
-std::vector<StatRow> stat_names(const stats::Group& root) {
+std::vector<StatName> stat_names(const stats::Group& root) {
   NameVisitor visitor;
   root.accept(visitor);
   return std::move(visitor.rows);

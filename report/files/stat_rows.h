@@ -12,9 +12,14 @@ namespace glint::report {
 
 // Holds one scalar, one part of a breakdown, or one filled bin of a histogram.
 struct StatRow {
-  std::string path;   // "gpu.core0.rt.rays", "gpu.core0.stalls::memory", "gpu.core0.rt.depth::8-15"
-  std::string value;  // shortest decimal that reads back to the same number
-  std::string unit, doc;
+  std::string path;            // "gpu.core0.rt.rays", "gpu.core0.stalls::memory", "gpu.core0.rt.depth::8-15"
+  std::string value;           // shortest decimal that reads back to the same number
+  std::string_view unit, doc;  // They live as long as the statistic.
+};
+
+// Holds what is known of a statistic without its values.
+struct StatName {
+  std::string path, unit, doc;
 };
 
 // Returns the rows depth first, in order of declaration. The root's own name is the first part of every path.
@@ -28,7 +33,7 @@ std::vector<StatRow> stat_totals(const stats::Group& root);
 
 // Returns every statistic once, without values, in order of first appearance. An instance's number in
 // brackets reads [*]. Parts and bins are left out, and an empty histogram is included.
-std::vector<StatRow> stat_names(const stats::Group& root);
+std::vector<StatName> stat_names(const stats::Group& root);
 
 // Returns whether a path matches `pattern`, in which '*' stands for any characters except '.'.
 bool path_matches(std::string_view pattern, std::string_view path);

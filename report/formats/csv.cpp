@@ -1,6 +1,8 @@
 // Implements the format `csv` of statistics: comma-separated values for spreadsheets, with the header
 // `path,value,unit,doc`.
 // SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
 #include "report/files/csv_field.h"
 #include "report/files/stat_rows.h"
 #include "report/files/stat_writer.h"
@@ -17,9 +19,15 @@ class CsvWriter final : public StatWriter {
 
   std::string write(const stats::Group& root) const override {
     std::string out = "path,value,unit,doc\n";
-    for (const StatRow& row : stat_rows(root))
-      out += csv_field(row.path) + "," + csv_field(row.value) + "," + csv_field(row.unit) + "," +
-             csv_field(row.doc) + "\n";
+    for (const StatRow& row : stat_rows(root)) {
+      for (const std::string_view field :
+           {std::string_view(row.path), std::string_view(row.value), row.unit}) {
+        append_csv_field(out, field);
+        out += ',';
+      }
+      append_csv_field(out, row.doc);
+      out += '\n';
+    }
     return out;
   }
 };

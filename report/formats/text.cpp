@@ -1,7 +1,6 @@
 // Implements the format `txt` of statistics: aligned text for reading and grep, `path   value  unit  # doc`.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <fmt/format.h>
 
 #include "report/files/stat_rows.h"
 #include "report/files/stat_writer.h"
@@ -26,9 +25,11 @@ class TextWriter final : public StatWriter {
       unit = std::max(unit, row.unit.size());
     }
     std::string out;
-    for (const StatRow& row : rows)
-      out += fmt::format("{:<{}}  {:>{}}  {:<{}}  # {}\n", row.path, path, row.value, value, row.unit, unit,
-                         row.doc);
+    for (const StatRow& row : rows) {
+      out.append(row.path).append(path - row.path.size() + 2, ' ');
+      out.append(value - row.value.size(), ' ').append(row.value).append(2, ' ');
+      out.append(row.unit).append(unit - row.unit.size(), ' ').append("  # ").append(row.doc) += '\n';
+    }
     return out;
   }
 };

@@ -53,7 +53,7 @@ std::string as_listed(const std::string& path) {
 bool print_stats(const std::string& wanted, std::vector<std::string>& names) {
   const std::string path = as_listed(wanted);
   bool any = false;
-  for (const report::StatRow& row : all_stats()) {
+  for (const report::StatName& row : all_stats()) {
     names.push_back(row.path);
     if (row.path != path && row.path.rfind(path + ".", 0) != 0) continue;
     print_output("{}\n  {}\n  unit   {}\n", row.path, row.doc, row.unit);

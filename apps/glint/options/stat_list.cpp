@@ -16,7 +16,7 @@
 
 namespace glint::app {
 
-std::vector<report::StatRow> all_stats() {
+std::vector<report::StatName> all_stats() {
   isa::Program program;
   program.name = "empty.rgen";
   program.stage = isa::Stage::RayGeneration;
@@ -32,10 +32,11 @@ std::vector<report::StatRow> all_stats() {
   world.raygen = 0;
   pipeline::GpuParams params;
   params.cores = 1;
-  std::vector<report::StatRow> out = report::stat_names(pipeline::TimingMachine(params, world, false).root());
+  std::vector<report::StatName> out =
+      report::stat_names(pipeline::TimingMachine(params, world, false).root());
   const auto add = [&](const stats::Group& root, const char* where) {
-    for (report::StatRow& row : report::stat_names(root)) {
-      if (std::ranges::any_of(out, [&](const report::StatRow& have) { return have.path == row.path; }))
+    for (report::StatName& row : report::stat_names(root)) {
+      if (std::ranges::any_of(out, [&](const report::StatName& have) { return have.path == row.path; }))
         continue;
       row.doc += where;
       out.push_back(std::move(row));
@@ -50,13 +51,13 @@ std::vector<report::StatRow> all_stats() {
 
 std::string stat_list() {
   std::vector<std::vector<std::string>> cells;
-  for (const report::StatRow& row : all_stats()) cells.push_back({row.path, row.unit, row.doc});
+  for (const report::StatName& row : all_stats()) cells.push_back({row.path, row.unit, row.doc});
   return report::table(cells, "");
 }
 
 std::string stat_list_markdown() {
   std::string out = "| statistic | unit | meaning |\n|---|---|---|\n";
-  for (const report::StatRow& row : all_stats())
+  for (const report::StatName& row : all_stats())
     out += fmt::format("| `{}` | {} | {} |\n", row.path, row.unit, row.doc);
   return out;
 }

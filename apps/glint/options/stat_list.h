@@ -9,7 +9,7 @@
 namespace glint::app {
 
 // Returns rows without values, in which [*] stands for the number of an instance.
-std::vector<report::StatRow> all_stats();
+std::vector<report::StatName> all_stats();
 // Returns the list in aligned columns.
 std::string stat_list();
 // Returns the table of docs/stats.md.

@@ -1,5 +1,6 @@
 // Tests the three formats of statistics on one small tree.
 // SPDX-License-Identifier: Apache-2.0
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/stats.h"
@@ -66,6 +67,31 @@ TEST_CASE("json nests groups and keeps value, unit and doc of each statistic") {
   CHECK(unit.at("sizes").at("value") == nlohmann::json{0, 1});
   CHECK(unit.at("sizes").at("bins").at("step") == 32);
   CHECK(unit.at("cycles").at("value") == nlohmann::json{{"busy", 0}, {"idle", 9}});
+}
+
+TEST_CASE("json is laid out as nlohmann lays it out, escaped strings and empty parts too") {
+  Tree tree;
+  stats::Group none(&tree.root, "none");
+  stats::Group odd(&tree.root, "odd \"\u00b5\"");
+  stats::Value big(
+      &odd, "big", "1/s", [] { return 1e300; }, "Tab:\t.");
+  stats::Value undefined(
+      &odd, "undefined", "", [] { return std::numeric_limits<double>::quiet_NaN(); }, "");
+  const std::string text = tree.as("json");
+  CHECK(text == nlohmann::ordered_json::parse(text).dump(2) + "\n");
+  CHECK(text.find("\"none\": {}") != std::string::npos);
+}
+
+TEST_CASE("a sum sees groups whose names have dots, and stars in names of groups and parts") {
+  Tree tree;
+  stats::Group dotted(&tree.root, "part.two");
+  stats::Counter count(&dotted, "n", "1", "Count.");
+  count += 5;
+  CHECK(stat_sum(tree.root, "gpu.part.two.n") == 5.0);
+  CHECK(stat_sum(tree.root, "gpu.p*.t*.n") == 5.0);
+  CHECK_FALSE(stat_sum(tree.root, "gpu.p*.n").has_value());
+  CHECK(stat_sum(tree.root, "gpu.l1.cy*::*") == 9.0);
+  CHECK(stat_sum(tree.root, "*.l1.*s") == 4.0);
 }
 
 TEST_CASE("names list each statistic once for all instances, empty histograms too") {
