@@ -4,10 +4,14 @@
 
 #include <bit>
 #include <cctype>
+#include <filesystem>
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "scenes/import/scene_file.h"
@@ -22,34 +26,77 @@ struct Entry {
   const char* name;
   const char* doc;
   uint64_t triangles;  // triangles of the original, as the paper counts them
-  Scene (*build)(const LoadOptions&);
+  Scene (*build)(const LoadOptions& options, const std::string& original);
+  // These are files, or folders of OBJ files, below the assets folder; the scene takes the first that is
+  // there. None says that the code is the original.
+  std::vector<std::string> originals = {};
   std::shared_ptr<const Motion> (*move)(const Scene&) = nullptr;  // null: nothing moves
 };
 
+// Return where an original may be: in the application's checkout, or in a folder that is named as the scene.
+std::vector<std::string> mesh(const std::string& scene, const std::string& file) {
+  return {"assets/models/" + file, "models/" + file, scene + "/" + file, file};
+}
+std::vector<std::string> folder(const std::string& name, const std::string& scene) {
+  return {"Scenes/" + name, "assets/Scenes/" + name, scene};
+}
+
 // Lists the scenes in the paper's order, by triangles.
-constexpr Entry kScenes[] = {
-    {"WKND", "487 procedural spheres under a sky; the scene is complete.", 0, build_weekend,
-     whirl_of_spheres},
-    {"SHIP", "A schooner with thin masts and rigging, in one structure.", 6'255, build_ship},
-    {"BUNNY", "A bunny in a Cornell box.", 144'058, build_bunny, swaying_model},
-    {"SPNZA", "A colonnaded hall with 24 large textures, in one structure.", 262'267, build_sponza,
-     walk_through_sponza},
-    {"CHSNT", "A chestnut tree whose leaves are cut out by their texture's alpha in any-hit shaders.",
-     313'000, build_chestnut},
-    {"BATH", "A bathroom with a mirror and lamps.", 423'821, build_bathroom},
-    {"REF", "A statue and a glass sphere in a box with mirror walls.", 448'912, build_mirror_box},
-    {"CRNVL", "A fairground, in one structure.", 449'600, build_carnival},
-    {"FOX", "A fox in thick fur of long thin triangles, among flowers.", 1'600'000, build_fox},
-    {"PARTY", "A harbour town of 320 structures.", 1'700'000, build_party},
-    {"SPRNG", "A figure close to the camera, with grass and a mountain that fills the view.", 1'900'000,
-     build_spring},
-    {"LANDS", "Cliffs and boats on reflecting water.", 3'300'000, build_lands},
-    {"FRST", "An autumn forest of 283 structures.", 4'200'000, build_forest},
-    {"PARK", "Long thin grass, trees and mountains on a procedural ground.", 6'000'000, build_park},
-    {"CAR", "A racing car of 302 structures with 244 textures.", 12'700'000, build_car},
-    {"ROBOT", "A machine of 248 structures, with the most triangles of all scenes.", 20'600'000, build_robot},
-    {"CORNELL", "The Cornell box alone, for tests; not a LumiBench scene.", 0, build_cornell},
-};
+const std::vector<Entry>& all_scenes() {
+  static const std::vector<Entry> scenes = {
+      {"WKND",
+       "487 procedural spheres under a sky; the scene is complete.",
+       0,
+       build_weekend,
+       {},
+       whirl_of_spheres},
+      {"SHIP", "A schooner with thin masts and rigging, in one structure.", 6'255, build_ship,
+       mesh("SHIP", "karimSchooner.obj")},
+      {"BUNNY",
+       "A bunny in a Cornell box.",
+       144'058,
+       build_bunny,
+       {"assets/models/bunny.obj", "models/bunny.obj", "BUNNY/bunny.obj", "BUNNY/stanford-bunny.obj"},
+       swaying_model},
+      {"SPNZA",
+       "A colonnaded hall with 24 large textures, in one structure.",
+       262'267,
+       build_sponza,
+       {"Scenes/Sponza/sponza.obj", "assets/Scenes/Sponza/sponza.obj", "SPNZA/sponza.obj", "sponza.obj",
+        "SPNZA/dabrovic/walls-lib_0.obj", "dabrovic/walls-lib_0.obj"},
+       walk_through_sponza},
+      {"CHSNT",
+       "A chestnut tree whose leaves are cut out by their texture's alpha in any-hit shaders.",
+       313'000,
+       build_chestnut,
+       {"assets/models/chestnut.obj", "models/chestnut.obj", "CHSNT/chestnut.obj", "chestnut.obj",
+        "CHSNT/AL05y.obj", "AL05y.obj"}},
+      {"BATH", "A bathroom with a mirror and lamps.", 423'821, build_bathroom, folder("Bathroom", "BATH")},
+      {"REF",
+       "A statue and a glass sphere in a box with mirror walls.",
+       448'912,
+       build_mirror_box,
+       {"assets/models/lucy.obj", "models/lucy.obj", "REF/lucy.obj"}},
+      {"CRNVL", "A fairground, in one structure.", 449'600, build_carnival, mesh("CRNVL", "TheCarnival.obj")},
+      {"FOX", "A fox in thick fur of long thin triangles, among flowers.", 1'600'000, build_fox,
+       folder("Blender_2.90", "FOX")},
+      {"PARTY", "A harbour town of 320 structures.", 1'700'000, build_party, folder("Blender_2.83", "PARTY")},
+      {"SPRNG", "A figure close to the camera, with grass and a mountain that fills the view.", 1'900'000,
+       build_spring, folder("Blender_2.80", "SPRNG")},
+      {"LANDS", "Cliffs and boats on reflecting water.", 3'300'000, build_lands,
+       folder("Blender_3.2", "LANDS")},
+      {"FRST", "An autumn forest of 283 structures.", 4'200'000, build_forest,
+       folder("Blender_2.91", "FRST")},
+      {"PARK", "Long thin grass, trees and mountains on a procedural ground.", 6'000'000, build_park,
+       folder("TreesAndGrass", "PARK")},
+      {"CAR", "A racing car of 302 structures with 244 textures.", 12'700'000, build_car,
+       folder("Blender_2.77", "CAR")},
+      {"ROBOT", "A machine of 248 structures, with the most triangles of all scenes.", 20'600'000,
+       build_robot, folder("Blender_2.78", "ROBOT")},
+      {"CORNELL", "The Cornell box alone, for tests; not a LumiBench scene.", 0, build_cornell},
+  };
+  return scenes;
+}
 
 // Hashes contents with FNV-1a, widened to 64-bit words and finished as in MurmurHash3. It takes values, never
 // the bytes of structs, so neither padding nor byte order changes the hash.
@@ -108,24 +155,49 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-// Returns the scene of a name. Sets `entry` to its row.
-Scene build_scene(const std::string& name, const LoadOptions& options, const Entry*& found) {
+// Returns the row of a scene by name. Throws UserError with the nearest name when there is none.
+const Entry& entry_of(const std::string& name) {
   const std::string wanted = upper_case(name);
   std::vector<std::string> names;
-  for (const Entry& entry : kScenes) {
+  for (const Entry& entry : all_scenes()) {
+    if (wanted == entry.name) return entry;
     names.push_back(entry.name);
-    if (wanted != entry.name) continue;
-    found = &entry;
-    Scene scene = entry.build(options);
-    scene.original_triangles = entry.triangles;
-    if (entry.triangles > 0)
-      scene.note += fmt::format(" It has {:.1f} % of the original's triangles.", 100 * scene.fraction());
-    return scene;
   }
   const std::string near = nearest(wanted, names);
   throw UserError({}, fmt::format("unknown scene '{}'", name),
                   near.empty() ? fmt::format("the scenes are {}", fmt::join(names, ", "))
                                : fmt::format("did you mean '{}'?", near));
+}
+
+bool holds_objects(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".obj") return true;
+  return false;
+}
+
+// Returns where the data of the original scene is, or "".
+std::string find_original(const Entry& entry, const std::string& assets) {
+  for (const std::string& place : entry.originals) {
+    const std::filesystem::path path = std::filesystem::path(assets) / place;
+    std::error_code error;
+    if (std::filesystem::is_regular_file(path, error) || holds_objects(path)) return path.string();
+  }
+  return "";
+}
+
+Scene build_scene(const Entry& entry, const LoadOptions& options) {
+  const std::string original = options.assets.empty() ? "" : find_original(entry, options.assets);
+  if (original.empty() && !options.assets.empty() && !entry.originals.empty())
+    throw UserError({},
+                    fmt::format("no file for scene {} in the assets folder '{}'", entry.name, options.assets),
+                    fmt::format("expected one of {} there; without an assets folder the scene is built in",
+                                fmt::join(entry.originals, ", ")));
+  Scene scene = entry.build(options, original);
+  scene.original_triangles = entry.triangles;
+  if (entry.triangles > 0)
+    scene.note += fmt::format(" It has {:.1f} % of the original's triangles.", 100 * scene.fraction());
+  return scene;
 }
 
 }  // namespace
@@ -196,7 +268,7 @@ uint64_t Scene::hash() const {
 
 std::vector<SceneInfo> scene_list() {
   std::vector<SceneInfo> list;
-  for (const Entry& entry : kScenes) list.push_back({entry.name, entry.doc, entry.move != nullptr});
+  for (const Entry& entry : all_scenes()) list.push_back({entry.name, entry.doc, entry.move != nullptr});
   return list;
 }
 
@@ -221,9 +293,14 @@ void name_materials(Scene& scene) {
 
 }  // namespace
 
+bool has_original(const std::string& name, const std::string& assets) {
+  const Entry& entry = entry_of(name);
+  return assets.empty() || entry.originals.empty() || !find_original(entry, assets).empty();
+}
+
 Scene load_scene(const std::string& name, const LoadOptions& options) {
-  const Entry* entry = nullptr;
-  Scene scene = names_scene_file(name) ? load_scene_file(name, options) : build_scene(name, options, entry);
+  const Entry* entry = names_scene_file(name) ? nullptr : &entry_of(name);
+  Scene scene = entry ? build_scene(*entry, options) : load_scene_file(name, options);
   name_materials(scene);
   if (options.instancing) share_copies(scene);
   if (options.moving && entry && entry->move) scene.motion = entry->move(scene);

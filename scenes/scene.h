@@ -135,6 +135,10 @@ struct SceneInfo {
 };
 std::vector<SceneInfo> scene_list();
 
+// Returns whether load_scene() finds the data of a scene in a folder of original data. Without a folder, and
+// of a scene that is complete as code, it needs none.
+bool has_original(const std::string& name, const std::string& assets);
+
 // Builds a scene by name (case-insensitive), or loads one from a file: .obj, .gltf, .glb. Throws UserError
 // with the nearest name when no scene has this name, and when the file cannot be read.
 Scene load_scene(const std::string& name, const LoadOptions& options);

@@ -175,24 +175,8 @@ void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t 
   for (const uint32_t index : part.indices) model.indices.push_back(first + index);
 }
 
-std::string find_folder(const std::string& assets, const std::vector<std::string>& folders) {
-  for (const std::string& candidate : folders) {
-    const fs::path folder = fs::path(assets) / candidate;
-    std::error_code error;
-    if (!fs::is_directory(folder, error)) continue;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".obj") return folder.string();
-  }
-  return "";
-}
-
-void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& rules) {
-  const std::string folder = find_folder(options.assets, rules.folders);
-  if (folder.empty())
-    throw UserError(
-        {}, fmt::format("no files for scene {} in the assets folder '{}'", scene.name, options.assets),
-        fmt::format("expected OBJ files in one of {} there; without an assets folder the scene is built in",
-                    fmt::join(rules.folders, ", ")));
+void load_folder(Scene& scene, const std::string& folder, const LoadOptions& options,
+                 const FolderRules& rules) {
   FolderLoader loader(scene, rules, folder);
   const uint64_t models = loader.run(options), absent = loader.absent();
   scene.form = absent == 0 ? "original" : "partial";

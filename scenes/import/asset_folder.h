@@ -18,9 +18,6 @@ struct NameRule {
 };
 
 struct FolderRules {
-  // These are candidates below the assets folder. The folder's own name is one of them, which means the
-  // folder itself.
-  std::vector<std::string> folders;
   bool textures = false;
   float scale = 1;                    // scales every position about the origin
   std::string skip = {};              // Files whose name contains this are left out; empty: no file is.
@@ -32,12 +29,9 @@ struct FolderRules {
 // Appends the files in the order of their names. Files without triangles give no model. A table
 // `instances.tsv` in the folder lists further models as affine copies of files: name, file, 3x4 matrix in
 // rows. Sets form and note. In the original, every OBJ file has a material library beside it. So a library
-// alone says that its OBJ file is absent and the scene is "partial". Throws UserError when no folder holds an
-// OBJ file.
-void load_folder(Scene& scene, const LoadOptions& options, const FolderRules& rules);
-
-// Returns the first of `folders` below `assets` that holds OBJ files, or "".
-std::string find_folder(const std::string& assets, const std::vector<std::string>& folders);
+// alone says that its OBJ file is absent and the scene is "partial".
+void load_folder(Scene& scene, const std::string& folder, const LoadOptions& options,
+                 const FolderRules& rules);
 
 // Returns a material of a colour given as 0 to 255. The components are divided by 256, as in the application.
 Material paint(int r, int g, int b);

@@ -175,18 +175,6 @@ std::vector<Material> load_materials(const std::string& path) {
   return materials;
 }
 
-std::string find_asset(const std::string& assets, const std::string& scene,
-                       const std::vector<std::string>& candidates) {
-  for (const std::string& candidate : candidates) {
-    const std::filesystem::path path = std::filesystem::path(assets) / candidate;
-    std::error_code error;
-    if (std::filesystem::is_regular_file(path, error)) return path.string();
-  }
-  throw UserError({}, fmt::format("no file for scene {} in the assets folder '{}'", scene, assets),
-                  fmt::format("expected one of {} there; without an assets folder the scene is built in",
-                              fmt::join(candidates, ", ")));
-}
-
 Model load_obj(const std::string& path, std::vector<Material>& materials, std::vector<Texture>* textures,
                std::vector<std::string>* names) {
   const tinyobj::ObjReader reader = read(path);

@@ -9,11 +9,6 @@
 
 namespace glint::scenes {
 
-// Returns the first of `candidates` (paths below `assets`) that exists, joined to `assets`. Throws UserError
-// that names every place when none does; `scene` is for the message.
-std::string find_asset(const std::string& assets, const std::string& scene,
-                       const std::vector<std::string>& candidates);
-
 // Loads one file as one model and appends its materials to `materials`. The rules are:
 //  - Polygons become fans.
 //  - Each distinct (position, normal, coordinate, material) becomes one vertex, in the order of first use.

@@ -39,8 +39,7 @@ void recolor(const std::string& name, std::span<Material> materials) {
 }
 
 FolderRules rules() {
-  return {.folders = {"Scenes/Bathroom", "assets/Scenes/Bathroom", "BATH"},
-          .colors = {{{"Meuble", "meuble", "baignoire"}, paint(196, 137, 88)},
+  return {.colors = {{{"Meuble", "meuble", "baignoire"}, paint(196, 137, 88)},
                      {{"statu"}, paint(14, 6, 3)},
                      {{"robinet", "etend_serviette"}, metallic(0.73f, 0.73f, 0.73f, 0)},
                      {{"emit_haut"}, diffuse_light(15, 15, 15)}},
@@ -187,14 +186,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_bathroom(const LoadOptions& options) {
+Scene build_bathroom(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "BATH";
   scene.camera = {.eye = {3.2814946f, 20.0356712f, 40.0068588f},
                   .target = {3.0562975f, 19.7621322f, 39.0717318f},
                   .field_of_view = 36,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, rules());
   return scene;
 }
 

@@ -8,23 +8,24 @@
 
 namespace glint::scenes {
 
-Scene build_weekend(const LoadOptions& options);
-Scene build_bunny(const LoadOptions& options);
-Scene build_mirror_box(const LoadOptions& options);
-Scene build_ship(const LoadOptions& options);
-Scene build_cornell(const LoadOptions& options);
-Scene build_sponza(const LoadOptions& options);
-Scene build_chestnut(const LoadOptions& options);
-Scene build_bathroom(const LoadOptions& options);
-Scene build_carnival(const LoadOptions& options);
-Scene build_fox(const LoadOptions& options);
-Scene build_party(const LoadOptions& options);
-Scene build_spring(const LoadOptions& options);
-Scene build_lands(const LoadOptions& options);
-Scene build_forest(const LoadOptions& options);
-Scene build_park(const LoadOptions& options);
-Scene build_car(const LoadOptions& options);
-Scene build_robot(const LoadOptions& options);
+// `original` is the file or the folder that holds the original scene, or empty where it is to be generated.
+Scene build_weekend(const LoadOptions& options, const std::string& original);
+Scene build_bunny(const LoadOptions& options, const std::string& original);
+Scene build_mirror_box(const LoadOptions& options, const std::string& original);
+Scene build_ship(const LoadOptions& options, const std::string& original);
+Scene build_cornell(const LoadOptions& options, const std::string& original);
+Scene build_sponza(const LoadOptions& options, const std::string& original);
+Scene build_chestnut(const LoadOptions& options, const std::string& original);
+Scene build_bathroom(const LoadOptions& options, const std::string& original);
+Scene build_carnival(const LoadOptions& options, const std::string& original);
+Scene build_fox(const LoadOptions& options, const std::string& original);
+Scene build_party(const LoadOptions& options, const std::string& original);
+Scene build_spring(const LoadOptions& options, const std::string& original);
+Scene build_lands(const LoadOptions& options, const std::string& original);
+Scene build_forest(const LoadOptions& options, const std::string& original);
+Scene build_park(const LoadOptions& options, const std::string& original);
+Scene build_car(const LoadOptions& options, const std::string& original);
+Scene build_robot(const LoadOptions& options, const std::string& original);
 
 // Returns the Cornell box of edge 555: 24 vertices and 12 triangles, open towards +z. The first four
 // materials of its scene are those of add_cornell_materials().

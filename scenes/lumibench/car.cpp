@@ -17,10 +17,6 @@ constexpr uint64_t kTriangles = 12'700'000;
 constexpr uint32_t kTextures = 244;     // as many as the original's
 constexpr uint32_t kTextureSide = 720;  // texels; 244 of them are the original's 504 MB
 
-FolderRules rules() {
-  return {.folders = {"Scenes/Blender_2.77", "assets/Scenes/Blender_2.77", "CAR"}, .textures = true};
-}
-
 // Where the car's parts are, in its frame: x from the tail (-1) to the nose (1), y from the road (-1) to the
 // roof (1), z across.
 constexpr float kSill = -0.62f, kAxle = 0.6f, kWheel = 0.62f;  // the last in world units: a wheel's radius
@@ -319,14 +315,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_car(const LoadOptions& options) {
+Scene build_car(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "CAR";
   scene.camera = {.eye = {24.5407028f, -6.0577549f, -8.1028061f},
                   .target = {23.6588073f, -5.7356780f, -7.7585287f},
                   .field_of_view = 30,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, {.textures = true});
   return scene;
 }
 

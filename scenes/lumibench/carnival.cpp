@@ -219,18 +219,15 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_carnival(const LoadOptions& options) {
+Scene build_carnival(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "CRNVL";
   scene.camera = {.eye = {275, 60, -700}, .target = {225, 120, -1000}, .field_of_view = 50};
-  if (options.assets.empty()) {
+  if (original.empty()) {
     generate(scene, options);
     return scene;
   }
-  const std::string path = find_asset(options.assets, scene.name,
-                                      {"assets/models/TheCarnival.obj", "models/TheCarnival.obj",
-                                       "CRNVL/TheCarnival.obj", "TheCarnival.obj"});
-  scene.models.push_back(load_obj(path, scene.materials));
+  scene.models.push_back(load_obj(original, scene.materials));
   place(scene.models.back(), {.translation = {400, 20, 150}, .scale = 0.2f});
   scene.form = "original";
   scene.note = "The mesh is from the assets folder.";

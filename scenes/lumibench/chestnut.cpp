@@ -11,7 +11,6 @@
 namespace glint::scenes {
 namespace {
 
-constexpr const char* kYoungTree = "CHSNT/AL05y.obj";   // a stand-in of another size
 constexpr double kTilt = -75 * 3.14159265358979 / 180;  // about +x
 
 void tilt(Model& model) {
@@ -38,14 +37,11 @@ Model grow_up(const Model& young) {
   return model;
 }
 
-void load(Scene& scene, const LoadOptions& options) {
-  const std::string path = find_asset(options.assets, scene.name,
-                                      {"assets/models/chestnut.obj", "models/chestnut.obj",
-                                       "CHSNT/chestnut.obj", "chestnut.obj", kYoungTree, "AL05y.obj"});
+void load(Scene& scene, const std::string& path) {
   Model tree = load_obj(path, scene.materials, &scene.textures);
   scene.form = "original";
   scene.note = "The mesh is from the assets folder.";
-  if (std::filesystem::path(path).filename() == "AL05y.obj") {
+  if (std::filesystem::path(path).filename() == "AL05y.obj") {  // a stand-in of another size
     tree = grow_up(tree);
     scene.form = "stand-in";
     scene.note = "Eight copies of the young tree (38,253 triangles) replace the original's old one (313K).";
@@ -89,12 +85,12 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_chestnut(const LoadOptions& options) {
+Scene build_chestnut(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "CHSNT";
   scene.camera = {.eye = {20, 0, 100}, .target = {20, 100, 0}, .field_of_view = 50};
   scene.alpha_test = true;
-  options.assets.empty() ? generate(scene, options) : load(scene, options);
+  original.empty() ? generate(scene, options) : load(scene, original);
   return scene;
 }
 

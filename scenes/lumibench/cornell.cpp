@@ -44,7 +44,7 @@ void add_cornell_materials(Scene& scene) {
   add_material(scene, "light", diffuse_light(15, 15, 15));
 }
 
-Scene build_cornell(const LoadOptions&) {
+Scene build_cornell(const LoadOptions&, const std::string&) {
   Scene scene;
   scene.name = "CORNELL";
   scene.form = "built-in";

@@ -15,8 +15,7 @@ Material bush_color(float draw) {
 }
 
 FolderRules rules(Random& draws) {
-  return {.folders = {"Scenes/Blender_2.91", "assets/Scenes/Blender_2.91", "FRST"},
-          .colors = {{{"Character2_Shirt"}, paint(156, 74, 61)},
+  return {.colors = {{{"Character2_Shirt"}, paint(156, 74, 61)},
                      {{"Character_Hair"}, paint(119, 74, 55)},
                      {{"Character_Pants"}, paint(131, 115, 160)},
                      {{"Character_hair_2"}, paint(121, 74, 56)},
@@ -135,7 +134,7 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_forest(const LoadOptions& options) {
+Scene build_forest(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "FRST";
   scene.camera = {.eye = {-25.9074593f, 2.5445480f, 61.7620773f},
@@ -143,7 +142,7 @@ Scene build_forest(const LoadOptions& options) {
                   .field_of_view = 30,
                   .focus_distance = 7};
   Random draws(42);  // the application's generator, with one draw per bush
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules(draws));
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, rules(draws));
   return scene;
 }
 

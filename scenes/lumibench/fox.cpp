@@ -11,10 +11,6 @@ namespace {
 
 constexpr uint64_t kTriangles = 1'600'000;
 
-FolderRules rules() {
-  return {.folders = {"Scenes/Blender_2.90", "assets/Scenes/Blender_2.90", "FOX"}};
-}
-
 void head(Generator& generator, const Frame& view, int32_t fur, int32_t dark) {
   const Frame skull = view.inner({0.2f, 0.5f, 0}, {1.05f, 0.95f, 1});
   const Vec3 fall = view.y * -1.0f;
@@ -87,14 +83,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_fox(const LoadOptions& options) {
+Scene build_fox(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "FOX";
   scene.camera = {.eye = {3.8318439f, 2.8577063f, 10.6312695f},
                   .target = {3.3567367f, 3.0268174f, 9.7677450f},
                   .field_of_view = 30,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, {});
   return scene;
 }
 

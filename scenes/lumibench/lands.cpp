@@ -13,8 +13,7 @@ constexpr uint64_t kTriangles = 3'300'000;
 constexpr float kWater = -4.5f;
 
 FolderRules rules() {
-  return {.folders = {"Scenes/Blender_3.2", "assets/Scenes/Blender_3.2", "LANDS"},
-          .colors = {{{"boat"}, paint(150, 111, 51)},
+  return {.colors = {{{"boat"}, paint(150, 111, 51)},
                      {{"water"}, metallic(18.0f / 256, 109.0f / 256, 105.0f / 256, 0.6f)},
                      {{"Landscape"}, paint(250, 250, 245)}}};
 }
@@ -128,14 +127,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_lands(const LoadOptions& options) {
+Scene build_lands(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "LANDS";
   scene.camera = {.eye = {1.5133433f, -0.9918727f, 13.2851229f},
                   .target = {0.5776852f, -1.3168955f, 13.1476310f},
                   .field_of_view = 25,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, rules());
   return scene;
 }
 

@@ -22,8 +22,7 @@ const Material kLeaf = paint(124, 252, 0), kRock = paint(136, 140, 141), kSoil =
                kCar = metallic(200.0f / 256, 200.0f / 256, 200.0f / 256, 0.2f);
 
 FolderRules rules() {
-  return {.folders = {"Scenes/TreesAndGrass", "assets/Scenes/TreesAndGrass", "PARK"},
-          .scale = kScale,
+  return {.scale = kScale,
           .colors = {{{"leaves", "grass"}, kLeaf},
                      {{"mountain"}, kRock},
                      {{"ground"}, kSoil},
@@ -108,9 +107,8 @@ class StandIns {
   std::map<std::string, int32_t> materials_;
 };
 
-void load(Scene& scene, const LoadOptions& options) {
-  load_folder(scene, options, rules());
-  const std::string folder = find_folder(options.assets, rules().folders);
+void load(Scene& scene, const std::string& folder, const LoadOptions& options) {
+  load_folder(scene, folder, options, rules());
   if (scene.form == "original" || !StandIns(scene, folder).run()) return;
   scene.form = "stand-in";
   scene.note =
@@ -206,7 +204,7 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_park(const LoadOptions& options) {
+Scene build_park(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "PARK";
   scene.camera = {.eye = {2, 0.5f, 0.75f},
@@ -216,7 +214,7 @@ Scene build_park(const LoadOptions& options) {
                   .focus_distance = 2};
   add_material(scene, "ground_sphere", lambertian(0.5f, 0.5f, 0.5f));
   scene.models.push_back(make_sphere("ground_sphere", {0, -1000, 0}, 1000, 0));
-  options.assets.empty() ? generate(scene, options) : load(scene, options);
+  original.empty() ? generate(scene, options) : load(scene, original, options);
   return scene;
 }
 

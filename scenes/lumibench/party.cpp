@@ -16,10 +16,6 @@ namespace {
 
 constexpr uint64_t kTriangles = 1'700'000;
 
-FolderRules rules() {
-  return {.folders = {"Scenes/Blender_2.83", "assets/Scenes/Blender_2.83", "PARTY"}};
-}
-
 // The hall's sizes, in units of the camera's distance. x is to the right, y up, z towards the camera; the eye
 // is the origin, and the front of the hall is open.
 constexpr float kWide = 4.6f, kFloor = -3.3f, kCeiling = 4.2f, kFront = -17, kBack = -31;
@@ -371,14 +367,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_party(const LoadOptions& options) {
+Scene build_party(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "PARTY";
   scene.camera = {.eye = {-63.8803749f, 4.6838064f, 59.8617097f},
                   .target = {-63.1351023f, 4.7005949f, 59.1951612f},
                   .field_of_view = 20,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, {});
   return scene;
 }
 

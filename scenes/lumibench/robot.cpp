@@ -9,10 +9,6 @@ namespace {
 
 constexpr uint64_t kTriangles = 20'600'000;
 
-FolderRules rules() {
-  return {.folders = {"Scenes/Blender_2.78", "assets/Scenes/Blender_2.78", "ROBOT"}};
-}
-
 void head(Generator& generator, const Frame& robot, std::span<const int32_t> paint) {
   generator.model("Skull", [&](Model& m) {
     add_rounded_box(m, robot.inner({0, 0.06f, 0}, {0.11f, 0.12f, 0.12f}), 500'000, paint[0], 0.7f);
@@ -101,14 +97,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_robot(const LoadOptions& options) {
+Scene build_robot(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "ROBOT";
   scene.camera = {.eye = {-0.3502433f, 1.1617968f, 1.0811127f},
                   .target = {-0.0603990f, 1.5020394f, 0.1865597f},
                   .field_of_view = 30,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, {});
   return scene;
 }
 

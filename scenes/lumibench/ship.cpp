@@ -8,22 +8,19 @@
 
 namespace glint::scenes {
 
-Scene build_ship(const LoadOptions& options) {
+Scene build_ship(const LoadOptions&, const std::string& original) {
   Scene scene;
   scene.name = "SHIP";
   scene.camera = {.eye = {378, 278, 500}, .target = {178, 278, 0}, .field_of_view = 50};
   Model ship;
-  if (options.assets.empty()) {
+  if (original.empty()) {
     ship = make_schooner(scene);
     scene.form = "built-in";
     scene.note =
         "The scene is a procedural schooner with the original's bounds and number of materials, and about "
         "its triangle count (6,255).";
   } else {
-    const std::string path = find_asset(options.assets, scene.name,
-                                        {"assets/models/karimSchooner.obj", "models/karimSchooner.obj",
-                                         "SHIP/karimSchooner.obj", "karimSchooner.obj"});
-    ship = load_obj(path, scene.materials);
+    ship = load_obj(original, scene.materials);
     scene.form = "original";
     scene.note = "The scene is complete: the original mesh is from the assets folder.";
   }

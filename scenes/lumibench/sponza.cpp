@@ -100,12 +100,7 @@ void load_stand_in(Scene& scene, const std::filesystem::path& folder) {
       "the original's textures.";
 }
 
-void load(Scene& scene, const LoadOptions& options) {
-  namespace fs = std::filesystem;
-  const std::vector<std::string> files = {
-      "Scenes/Sponza/sponza.obj",       "assets/Scenes/Sponza/sponza.obj", "SPNZA/sponza.obj", "sponza.obj",
-      "SPNZA/dabrovic/walls-lib_0.obj", "dabrovic/walls-lib_0.obj"};
-  const fs::path path = find_asset(options.assets, scene.name, files);
+void load(Scene& scene, const std::filesystem::path& path) {
   if (path.filename() == "sponza.obj") {
     scene.models.push_back(load_obj(path.string(), scene.materials, &scene.textures));
     scene.form = "original";
@@ -280,11 +275,11 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_sponza(const LoadOptions& options) {
+Scene build_sponza(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "SPNZA";
   scene.camera = {.eye = {0, 115, 2}, .target = {0, 115, 1}, .field_of_view = 70, .focus_distance = 2};
-  options.assets.empty() ? generate(scene, options) : load(scene, options);
+  original.empty() ? generate(scene, options) : load(scene, original);
   return scene;
 }
 

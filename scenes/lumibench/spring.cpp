@@ -12,8 +12,7 @@ namespace {
 constexpr uint64_t kTriangles = 1'900'000;
 
 FolderRules rules() {
-  return {.folders = {"Scenes/Blender_2.80", "assets/Scenes/Blender_2.80", "SPRNG"},
-          .skip = "Dirt_grass",
+  return {.skip = "Dirt_grass",
           .colors = {{{"spring_body"}, paint(223, 175, 171)},
                      {{"stitches"}, paint(92, 64, 51)},
                      {{"spring_jacket"}, paint(163, 67, 42)},
@@ -113,14 +112,14 @@ void generate(Scene& scene, const LoadOptions& options) {
 
 }  // namespace
 
-Scene build_spring(const LoadOptions& options) {
+Scene build_spring(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "SPRNG";
   scene.camera = {.eye = {-2.4033604f, -0.2906455f, 5.1551695f},
                   .target = {-2.7052931f, -0.0500029f, 4.2327120f},
                   .field_of_view = 20,
                   .focus_distance = 7};
-  options.assets.empty() ? generate(scene, options) : load_folder(scene, options, rules());
+  original.empty() ? generate(scene, options) : load_folder(scene, original, options, rules());
   return scene;
 }
 

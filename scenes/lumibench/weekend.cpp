@@ -47,7 +47,7 @@ Material draw_material(Spheres& spheres, float choice) {
 
 }  // namespace
 
-Scene build_weekend(const LoadOptions&) {
+Scene build_weekend(const LoadOptions&, const std::string&) {
   Spheres spheres;
   spheres.add({0, -1000, 0}, 1000, lambertian(0.5f, 0.5f, 0.5f), "ground");
   for (int i = -11; i < 11; ++i)

@@ -215,6 +215,17 @@ class Bench(BenchTest):
         self.assertIn("SHIP_SH", done.stderr)
         self.assertEqual(list(self.metrics()), ["WKND_SH"])
 
+    def test_workloads_whose_scenes_have_no_files_in_the_assets_folder_are_left_out_by_name(self):
+        (self.folder / "data/SHIP").mkdir(parents=True)
+        (self.folder / "data/SHIP/karimSchooner.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        done = self.glint(0, "bench", "SHIP_SH", "CRNVL", *SMALL, "--mode", "functional", "--assets", "data", "--out", "out")
+        self.assertIn("1 workloads: ", done.stdout)
+        self.assertIn("left out, because their scenes have no files in 'data': CRNVL_PT CRNVL_SH CRNVL_AO\n", done.stdout)
+        self.assertEqual([(name, row["form"]) for name, row in self.metrics().items()], [("SHIP_SH", "original")])
+        done = self.glint(2, "bench", "CRNVL", *SMALL, "--assets", "data", "--out", "none")
+        self.assertIn("no workload has a scene with files in the assets folder 'data'", done.stderr)
+        self.assertFalse((self.folder / "none").exists())
+
     def test_an_interrupted_suite_keeps_what_is_finished_and_leaves_no_process(self):
         bench = subprocess.Popen([GLINT, "bench", "SHIP_SH", "PARK_PT", *SMALL, "-j", "2", "--out", "out"], cwd=self.folder,
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

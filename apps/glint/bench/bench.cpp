@@ -131,6 +131,9 @@ class Bench {
         "{} workloads{}: {}{} on {}, {} at a time, into {}\n", plan_.tasks.size(),
         options_.resume ? fmt::format(", {} of them complete", plan_.tasks.size() - chosen_.size()) : "",
         inputs(), options_.mode, options_.config, limits_.processes, plan_.directory);
+    if (!plan_.left_out.empty())
+      print_output("left out, because their scenes have no files in '{}': {}\n", options_.assets,
+                   fmt::join(plan_.left_out, " "));
     if (chosen_.empty()) return;
     print_output("memory, estimated: {} for {}, {} for the largest together; limit {}\n", gigabytes(largest),
                  name, gigabytes(together), limits_.memory ? gigabytes(limits_.memory) : "not known");

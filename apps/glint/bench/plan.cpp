@@ -18,6 +18,7 @@
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
 #include "report/files/run_record.h"
+#include "scenes/scene.h"
 #include "setup/resources.h"
 
 namespace glint::app {
@@ -138,6 +139,10 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
       options.out.empty() ? "out/bench-" + fs::path(options.config).stem().string() : options.out;
   const uint64_t pixels = uint64_t{frame.width} * frame.height;
   for (const NamedWorkload& workload : workloads) {
+    if (!workload.is_program() && !scenes::has_original(std::string(workload.scene), options.assets)) {
+      plan.left_out.push_back(workload.name());
+      continue;
+    }
     BenchTask task{workload, plan.directory + "/" + workload.name(), {}};
     task.process.arguments = command_of(session, options, task);
     task.process.log = task.directory + "/log.txt";
@@ -145,6 +150,10 @@ BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
     task.is_complete = options.resume && is_complete(task, plan.key);
     plan.tasks.push_back(std::move(task));
   }
+  if (plan.tasks.empty())
+    throw UserError(
+        {}, fmt::format("no workload has a scene with files in the assets folder '{}'", options.assets),
+        "without an assets folder the scenes are built in");
   return plan;
 }
 

@@ -37,6 +37,7 @@ struct BenchTask {
 struct BenchPlan {
   std::string directory, key;
   std::vector<BenchTask> tasks;
+  std::vector<std::string> left_out;  // workloads whose scenes have no data in the assets folder
 };
 
 // Hashes the names and contents of the built-in shaders, so that edited shaders give new results.

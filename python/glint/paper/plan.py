@@ -55,7 +55,7 @@ def suite_of(options: Options) -> tuple[str, ...]:
 
 
 def _count(names: tuple[str, ...]) -> int:
-    return {("subset",): 8, ("lumibench",): 46, ("compute",): 14}.get(names, len(names))
+    return {("subset",): 8, ("lumibench",): 46, ("compute",): 13}.get(names, len(names))
 
 
 def plan(options: Options) -> list[Set]:

@@ -174,6 +174,23 @@ TEST_CASE("a missing asset is a user error that says which file belongs where") 
   CHECK(message.find(folder.path.string()) != std::string::npos);
 }
 
+TEST_CASE("the data of an original is found as a file, or as a folder that holds OBJ files") {
+  const Folder folder("glint_scene_test_found");
+  const std::string assets = folder.path.string();
+  std::filesystem::create_directories(folder.path / "FOX");
+  folder.write("FOX/head.mtl", "newmtl m\n");
+  CHECK_FALSE(has_original("SHIP", assets));
+  CHECK_FALSE(has_original("FOX", assets));
+  CHECK(message_of("FOX", {assets}).find("Scenes/Blender_2.90, assets/Scenes/Blender_2.90, FOX") !=
+        std::string::npos);
+  folder.write("SHIP/karimSchooner.obj", "v 0 0 0\n");
+  folder.write("FOX/tail.obj", "v 0 0 0\n");
+  CHECK(has_original("ship", assets));
+  CHECK(has_original("FOX", assets));
+  CHECK(has_original("FOX", ""));
+  CHECK(has_original("WKND", assets));
+}
+
 TEST_CASE("an OBJ file's polygons become fans of vertices shared by value in the order of first use") {
   const Folder folder("glint_scene_test_obj");
   folder.write("m.mtl", "newmtl a\nKd 0.1 0.2 0.3\nnewmtl b\n");
