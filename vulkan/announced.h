@@ -41,7 +41,8 @@ struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceVulkan13Properties,
                           VkPhysicalDeviceAccelerationStructurePropertiesKHR,
                           VkPhysicalDeviceRayTracingPipelinePropertiesKHR,
-                          VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV {
+                          VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV,
+                          VkPhysicalDeviceDescriptorBufferPropertiesEXT {
   // The structures of 1.1 rename these.
   VkShaderStageFlags supportedStages = 0;
   VkSubgroupFeatureFlags supportedOperations = 0;
@@ -49,6 +50,7 @@ struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
   // Extensions bring these.
   uint32_t maxPushDescriptors = 0;
   VkDeviceSize minImportedHostPointerAlignment = 0;
+  size_t combinedImageSamplerDensityMapDescriptorSize = 0;
 };
 
 // Fills one structure of a pNext chain, if it is one of those that the driver knows.

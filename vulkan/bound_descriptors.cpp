@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/bound_descriptors.h"
 
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,16 +21,35 @@ bool exists(const Device& device, const void* resource) {
   return resource && device.bindable.contains(resource);
 }
 
-// Names a binding of a set that is bound.
+// Names a binding of a set that is bound, with its descriptors.
 struct Place {
   const BoundSet& set;
   const LayoutBinding& layout;
-  const Descriptor& at(uint32_t element) const { return set.set->descriptors[layout.first + element]; }
+  std::span<const Descriptor> descriptors;
+  const Descriptor& at(uint32_t element) const { return descriptors[element]; }
 };
+
+// Returns the layout of a set that is bound, or null.
+const DescriptorSetLayout* bound_layout(const BoundSet& bound) {
+  if (bound.stored) return &bound.stored->layout;
+  return bound.set ? &bound.set->layout : nullptr;
+}
+
+// Returns the descriptors of a binding. An inline uniform block has none.
+std::span<const Descriptor> descriptors_of(const DescriptorSet& set, const LayoutBinding& binding) {
+  return std::span(set.descriptors).subspan(binding.first, binding.is_inline() ? 0 : binding.count);
+}
+
+// Returns where the bytes of an inline uniform block lie.
+Address inline_block_of(const BoundSet& bound, uint32_t number) {
+  if (bound.stored) return bound.stored->address + stored_offset(bound.stored->layout, number);
+  return bound.set->inline_blocks.at(number);
+}
 
 pipeline::BufferRange buffer_range(Device& device, const Place& place, uint32_t element,
                                    pipeline::BufferRange unbound) {
   const Descriptor& descriptor = place.at(element);
+  if (descriptor.address) return {descriptor.address, descriptor.range};
   if (!exists(device, descriptor.buffer)) return unbound;
   const VkDeviceSize dynamic =
       place.layout.is_dynamic() ? place.set.dynamic_offsets.at(place.layout.first_dynamic + element) : 0;
@@ -54,17 +75,25 @@ void bind_structures(pipeline::LaunchBuilder& builder, const Place& place, pipel
   builder.bind_buffers(number, all);
 }
 
-// Returns the texels of a buffer as an image with one row.
-exec::ImageView texels_of(Device& device, const VkBufferView_T& view) {
-  const uint64_t bytes = bytes_of(device, view.buffer, view.offset, view.range).bytes;
+// Returns texels as an image with one row.
+exec::ImageView row_of_texels(std::string name, exec::TexelFormat format, Address address, uint64_t bytes) {
   exec::ImageView out;
-  out.name = view.buffer->name, out.format = view.format, out.shape = isa::ImageShape::Buffer;
+  out.name = std::move(name), out.format = format, out.shape = isa::ImageShape::Buffer;
   out.width = uint32_t(bytes / out.texel_bytes());
-  out.base = address_of_part(device, view.buffer, view.offset, bytes);
+  out.base = address;
   return out;
 }
 
+exec::ImageView texels_of(Device& device, const VkBufferView_T& view) {
+  const uint64_t bytes = bytes_of(device, view.buffer, view.offset, view.range).bytes;
+  const Address address = address_of_part(device, view.buffer, view.offset, bytes);
+  return row_of_texels(view.buffer->name, view.format, address, bytes);
+}
+
 exec::ImageView image_of(Device& device, const Descriptor& descriptor, pipeline::BindingPlace number) {
+  if (descriptor.address)
+    return row_of_texels("texels at an address", texel_format_of(descriptor.format), descriptor.address,
+                         descriptor.range);
   if (exists(device, descriptor.texels) && exists(device, descriptor.texels->buffer))
     return texels_of(device, *descriptor.texels);
   if (!exists(device, descriptor.view)) return pipeline::unbound_image(number);
@@ -95,18 +124,21 @@ void bind_samplers(const Device& device, pipeline::LaunchBuilder& builder, const
 void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& bound,
           const frontend::Binding& use) {
   const auto set = bound.sets.find(use.set);
-  if (set == bound.sets.end() || !set->second.set) return;
+  const DescriptorSetLayout* const layout = set == bound.sets.end() ? nullptr : bound_layout(set->second);
+  if (!layout) return;
   const uint32_t number_there = bound.pipeline->binding_numbers().original(use.set, use.binding);
-  const auto binding = set->second.set->layout.bindings.find(number_there);
-  if (binding == set->second.set->layout.bindings.end() || binding->second.count == 0) return;
-  const Place place{set->second, binding->second};
+  const auto binding = layout->bindings.find(number_there);
+  if (binding == layout->bindings.end() || binding->second.count == 0) return;
+  std::vector<Descriptor> stored;
+  if (set->second.stored) stored = read_stored(device, *set->second.stored, number_there);
+  const Place place{set->second, binding->second,
+                    set->second.stored ? stored : descriptors_of(*set->second.set, binding->second)};
   const pipeline::BindingPlace number{use.set, use.binding};
   switch (kind_of(place.layout.type)) {
     case DescriptorKind::Buffer:
       return bind_buffers(device, builder, place, number);
     case DescriptorKind::InlineBlock:
-      return builder.bind_buffers(number,
-                                  {{set->second.set->inline_blocks.at(number_there), place.layout.count}});
+      return builder.bind_buffers(number, {{inline_block_of(set->second, number_there), place.layout.count}});
     case DescriptorKind::Sampler:
       return bind_samplers(device, builder, place, number);
     case DescriptorKind::TexelBuffer:

@@ -9,6 +9,7 @@ void VkCommandBuffer_T::reset() {
   failure = VK_SUCCESS;
   commands.clear();
   bound = bound_for_rays = {};
+  descriptor_buffers.clear();
   graphics_pipeline.clear();
   rendering = {};
 }
@@ -71,6 +72,7 @@ VkResult ResetCommandBuffer(CommandBuffer& commands, VkCommandBufferResetFlags) 
 void CmdExecuteCommands(CommandBuffer& commands, uint32_t count, const VkCommandBuffer* secondaries) {
   for (uint32_t i = 0; i < count; ++i) secondaries[i]->append_to(commands.commands);
   commands.bound = commands.bound_for_rays = {};  // Vulkan says that nothing stays bound.
+  commands.descriptor_buffers.clear();
 }
 
 // There is one device in the group.

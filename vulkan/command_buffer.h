@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "vulkan/descriptor_buffer.h"
 #include "vulkan/descriptor_set.h"
 #include "vulkan/instance.h"
 #include "vulkan/queue.h"
@@ -22,8 +23,9 @@ namespace glint::vulkan {
 // Is a set as a launch finds it. What is written to the set before the launch runs counts.
 struct BoundSet {
   DescriptorSet* set = nullptr;
-  std::shared_ptr<DescriptorSet> pushed;  // owns `set` when it was pushed
-  std::vector<uint32_t> dynamic_offsets;  // in the order of the layout's dynamic descriptors
+  std::shared_ptr<DescriptorSet> pushed;              // owns `set` when it was pushed
+  std::vector<uint32_t> dynamic_offsets;              // in the order of the layout's dynamic descriptors
+  std::shared_ptr<const StoredSet> stored = nullptr;  // instead of `set` where descriptors lie in memory
 };
 
 // Is all that a launch takes from the commands before it.
@@ -63,7 +65,8 @@ struct VkCommandBuffer_T : glint::vulkan::Dispatchable {
   glint::vulkan::CommandList commands;
   // What is bound for dispatches, and what is bound for rays. Push constants are written to both.
   glint::vulkan::Bindings bound, bound_for_rays;
-  std::string graphics_pipeline;  // the name of the one that is bound
+  std::vector<glint::Address> descriptor_buffers;  // that are bound
+  std::string graphics_pipeline;                   // the name of the one that is bound
   glint::vulkan::Rendering rendering;
 };
 

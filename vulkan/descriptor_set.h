@@ -20,6 +20,9 @@ struct Descriptor {
   VkSampler sampler = nullptr;
   VkBufferView texels = nullptr;
   Address structure = 0;  // of an acceleration structure
+  // Names bytes instead of `buffer` or `texels` where descriptors lie in memory.
+  Address address = 0;
+  VkFormat format = VK_FORMAT_UNDEFINED;  // of texels at `address`
 };
 
 // Says what descriptors of a type refer to.

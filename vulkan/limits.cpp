@@ -9,6 +9,7 @@
 #include "exec/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
+#include "vulkan/descriptor_buffer.h"
 #include "vulkan/image.h"
 #include "vulkan/instance.h"
 
@@ -158,6 +159,34 @@ void set_descriptor_indexing(DeviceProperties& p) {
   p.maxPushDescriptors = 32;
 }
 
+// Descriptors in buffers are all of one size.
+void set_descriptor_buffers(DeviceProperties& p) {
+  p.combinedImageSamplerDescriptorSingleArray = p.bufferlessPushDescriptors = VK_TRUE;
+  p.descriptorBufferOffsetAlignment = kStoredBytes;
+  p.maxDescriptorBufferBindings = p.maxResourceDescriptorBufferBindings = 32;
+  p.maxSamplerDescriptorBufferBindings = p.maxEmbeddedImmutableSamplerBindings = 32;
+  p.maxEmbeddedImmutableSamplers = kManyDescriptors;
+  for (size_t* bytes :
+       {&p.bufferCaptureReplayDescriptorDataSize, &p.imageCaptureReplayDescriptorDataSize,
+        &p.imageViewCaptureReplayDescriptorDataSize, &p.samplerCaptureReplayDescriptorDataSize,
+        &p.accelerationStructureCaptureReplayDescriptorDataSize})
+    *bytes = sizeof(uint64_t);
+  for (size_t* bytes :
+       {&p.samplerDescriptorSize, &p.combinedImageSamplerDescriptorSize, &p.sampledImageDescriptorSize,
+        &p.storageImageDescriptorSize, &p.uniformTexelBufferDescriptorSize,
+        &p.robustUniformTexelBufferDescriptorSize, &p.storageTexelBufferDescriptorSize,
+        &p.robustStorageTexelBufferDescriptorSize, &p.uniformBufferDescriptorSize,
+        &p.robustUniformBufferDescriptorSize, &p.storageBufferDescriptorSize,
+        &p.robustStorageBufferDescriptorSize, &p.inputAttachmentDescriptorSize,
+        &p.accelerationStructureDescriptorSize, &p.combinedImageSamplerDensityMapDescriptorSize})
+    *bytes = kStoredBytes;
+  for (VkDeviceSize* range :
+       {&p.maxSamplerDescriptorBufferRange, &p.maxResourceDescriptorBufferRange,
+        &p.samplerDescriptorBufferAddressSpaceSize, &p.resourceDescriptorBufferAddressSpaceSize,
+        &p.descriptorBufferAddressSpaceSize})
+    *range = kMaxAllocationBytes;
+}
+
 void set_acceleration_structures(DeviceProperties& p) {
   p.maxGeometryCount = p.maxInstanceCount = (1u << 24) - 1;
   p.maxPrimitiveCount = (1u << 29) - 1;
@@ -210,6 +239,7 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
   set_floats(p);
   set_descriptor_indexing(p);
   set_inline_uniform_blocks(p);
+  set_descriptor_buffers(p);
   set_acceleration_structures(p);
   set_ray_pipelines(p, gpu);
   p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;

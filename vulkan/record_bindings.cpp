@@ -22,13 +22,18 @@ Bindings* bound_at(CommandBuffer& commands, VkPipelineBindPoint point) {
   }
 }
 
+const DescriptorSetLayout& layout_at(VkPipelineLayout layout, uint32_t number) {
+  if (number >= layout->sets.size()) throw Refusal(fmt::format("the pipeline layout has no set {}", number));
+  return layout->sets[number];
+}
+
 // Returns the set that is pushed to, as a copy of what was pushed before: earlier launches keep theirs. What
 // was pushed with a layout of other bindings is gone.
 DescriptorSet& pushed_set(CommandBuffer& commands, VkPipelineBindPoint point, VkPipelineLayout layout,
                           uint32_t number) {
-  if (number >= layout->sets.size()) throw Refusal(fmt::format("the pipeline layout has no set {}", number));
+  const DescriptorSetLayout& wanted = layout_at(layout, number);
   BoundSet& bound = bound_at(commands, point)->sets[number];
-  const DescriptorSetLayout& wanted = layout->sets[number];
+  bound.stored.reset();
   const bool goes_on = bound.pushed && bound.pushed->layout.bindings == wanted.bindings;
   bound.pushed = std::make_shared<DescriptorSet>(goes_on ? *bound.pushed : set_of(wanted));
   bound.set = bound.pushed.get();
@@ -60,6 +65,36 @@ void CmdBindDescriptorSets(CommandBuffer& commands, VkPipelineBindPoint point, V
     bound.dynamic_offsets.assign(offsets, offsets + dynamic);
     offsets += dynamic;
   }
+}
+
+void CmdBindDescriptorBuffersEXT(CommandBuffer& commands, uint32_t count,
+                                 const VkDescriptorBufferBindingInfoEXT* infos) {
+  commands.descriptor_buffers.clear();
+  for (uint32_t i = 0; i < count; ++i) commands.descriptor_buffers.push_back(infos[i].address);
+}
+
+void CmdSetDescriptorBufferOffsetsEXT(CommandBuffer& commands, VkPipelineBindPoint point,
+                                      VkPipelineLayout layout, uint32_t first, uint32_t count,
+                                      const uint32_t* buffers, const VkDeviceSize* offsets) {
+  Bindings* const bindings = bound_at(commands, point);
+  if (!bindings) return;
+  for (uint32_t i = 0; i < count; ++i) {
+    const DescriptorSetLayout& set = layout_at(layout, first + i);
+    if (buffers[i] >= commands.descriptor_buffers.size())
+      throw Refusal(fmt::format("set {} lies in descriptor buffer {}, and {} of them are bound", first + i,
+                                buffers[i], commands.descriptor_buffers.size()));
+    bindings->sets[first + i] = {
+        nullptr, nullptr, std::vector<uint32_t>(set.dynamic),
+        std::make_shared<StoredSet>(StoredSet{set, commands.descriptor_buffers[buffers[i]] + offsets[i]})};
+  }
+}
+
+void CmdBindDescriptorBufferEmbeddedSamplersEXT(CommandBuffer& commands, VkPipelineBindPoint point,
+                                                VkPipelineLayout layout, uint32_t number) {
+  Bindings* const bindings = bound_at(commands, point);
+  if (!bindings) return;
+  auto samplers = std::make_shared<DescriptorSet>(set_of(layout_at(layout, number)));
+  bindings->sets[number] = {samplers.get(), samplers, {}};
 }
 
 void CmdPushConstants(CommandBuffer& commands, VkPipelineLayout, VkShaderStageFlags, uint32_t offset,

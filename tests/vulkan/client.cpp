@@ -269,7 +269,7 @@ ComputePipeline Client::pipeline(const std::string& glsl, const PipelineOptions&
   check(vkCreatePipelineLayout(device, &layout, nullptr, &out.layout), "vkCreatePipelineLayout");
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, info.layout = out.layout;
-  info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE;
+  info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE | options.flags;
   info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                 nullptr,
                 0,

@@ -45,6 +45,7 @@ struct PipelineOptions {
   VkDescriptorSetLayoutCreateFlags set_flags = 0;
   uint32_t inline_bytes = 0;        // of each inline uniform block
   std::vector<uint32_t> numbers{};  // of the bindings; empty: from 0 on
+  VkPipelineCreateFlags flags = 0;
 };
 
 // Holds an instance with a messenger, a device and a command pool. Everything that it made ends with it.
