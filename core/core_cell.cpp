@@ -36,8 +36,11 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       barriers_(parts()),
       reorder_(ReorderUnit::make(parts(), memory_)),
       issue_(parts(), {memory_, constants_, rays_, barriers_, reorder_.get()}, doors_),
-      seat_{0, warps_.size(), context.index, context.cores} {
+      seat_{0, warps_.size(), context.index, context.cores},
+      news_(context.news),
+      told_(kHasRoom) {
   executor_.use(view_.get());
+  if (news_) *news_ = told_;
 }
 
 CoreCell::~CoreCell() = default;
@@ -94,6 +97,15 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   ++counts_.stats.blocks;
   for (uint32_t w = 0; w < num_warps; ++w) launch_warp(home, w, ready, now);
   count_residents(now);
+  tell_news();
+}
+
+void CoreCell::tell_news() {
+  if (!news_) return;
+  const bool has_effects = view_ && view_->has_effects();
+  const auto news =
+      uint8_t((has_effects ? kHasEffects : 0) | (fault() ? kHasFault : 0) | (has_room() ? kHasRoom : 0));
+  if (news != told_) *news_ = told_ = news;
 }
 
 void CoreCell::launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now) {
@@ -115,6 +127,7 @@ void CoreCell::advance(Cycle from, Cycle until) {
     step(now++);
     if (!no_skip_ && warps_.alarms().next(now) > now) now = next_event(now);
   }
+  tell_news();
 }
 
 Cycle CoreCell::next_event(Cycle from) const {

@@ -50,9 +50,13 @@ class CoreCell final : public Cell {
     CodePlaces places;   // used when the caches of instructions or constants are not perfect
     Cycle turn = 0;      // cycles after which other cores see what this one wrote; 0: there are no others
     uint32_t shared_per_warp = 0;  // bytes of shared memory that the RT unit takes for each warp
+    uint8_t* news = nullptr;       // where the core says, for the time between windows, what is new (News)
     // It belongs to the program and the parameters, and cores share it. null: the core makes its own.
     std::shared_ptr<const IssueTable> table = nullptr;
   };
+  // Says what somebody has to look at between windows. A core writes these bits when they have changed, so
+  // that a machine reads one byte of each core and not its state.
+  enum News : uint8_t { kHasEffects = 1, kHasFault = 2, kHasRoom = 4 };
   // The program and the parameters must have passed check().
   CoreCell(const Params& params, const Context& context);
   ~CoreCell() override;
@@ -145,6 +149,7 @@ class CoreCell final : public Cell {
   const mem::Latencies& latencies() const { return counts_.latencies; }
 
  private:
+  void tell_news();
   void launch_warp(BlockSlot& home, uint32_t warp_in_block, Cycle ready, Cycle now);
   void step(Cycle now);
   void issue(Cycle now);
@@ -184,6 +189,8 @@ class CoreCell final : public Cell {
   Cycle residents_since_ = 0;
   Cycle active_until_ = 0;  // nothing has happened in this cycle or after it
   IntervalSampler sampler_;
+  uint8_t* const news_;  // null when nobody reads it
+  uint8_t told_;         // the bits that were written last
 };
 
 }  // namespace glint::core

@@ -11,6 +11,10 @@ namespace {
 
 constexpr uint64_t kEnd = ~uint64_t{0};
 
+// CellPool::left_ counts cells that have moved in steps of kMoved, and cells that have thrown in steps of
+// kThrown.
+constexpr uint64_t kMoved = uint64_t{1} << 24, kThrown = uint64_t{1} << 44;
+
 // Choice: a thread polls this many times before it sleeps. The polls take a few microseconds, which is about
 // as long as the work between two windows. A longer wait means that another program has the processor that
 // the awaited thread needs, and polling on would keep that thread from it.
@@ -22,77 +26,104 @@ void relax() {
 #endif
 }
 
-// Waits until `value` is no longer `old`, and returns the new value.
-uint64_t wait_change(const std::atomic<uint64_t>& value, uint64_t old) {
-  for (int i = 0; i < kPolls; ++i) {
-    if (const uint64_t now = value.load(std::memory_order_acquire); now != old) return now;
-    relax();
+// Waits until `is_over(value)`, and returns the value.
+template <class IsOver>
+uint64_t wait_until(const std::atomic<uint64_t>& value, IsOver&& is_over) {
+  for (;;) {
+    uint64_t now = value.load(std::memory_order_acquire);
+    for (int i = 0; i < kPolls && !is_over(now); ++i) {
+      relax();
+      now = value.load(std::memory_order_acquire);
+    }
+    if (is_over(now)) return now;
+    value.wait(now, std::memory_order_acquire);
   }
-  value.wait(old, std::memory_order_acquire);
-  return value.load(std::memory_order_acquire);
+}
+
+// Returns the cells of each thread.
+std::vector<std::vector<uint32_t>> dealt(size_t cells, uint32_t threads, const std::vector<uint32_t>& homes) {
+  std::vector<std::vector<uint32_t>> lists(
+      std::clamp<uint32_t>(threads, 1, uint32_t(std::max<size_t>(cells, 1))));
+  for (uint32_t i = 0; i < cells; ++i)
+    lists[(homes.empty() ? i : homes[i % homes.size()]) % lists.size()].push_back(i);
+  return lists;
 }
 
 }  // namespace
 
 CellPool::CellPool(const std::vector<Cell*>& cells, uint32_t threads, const std::vector<uint32_t>& homes)
-    : places_(std::make_unique<Place[]>(cells.size())), num_places_(cells.size()) {
-  const uint32_t count = std::clamp<uint32_t>(threads, 1, uint32_t(std::max<size_t>(cells.size(), 1)));
-  for (size_t i = 0; i < num_places_; ++i) {
+    : places_(std::make_unique<Place[]>(cells.size())), lists_(dealt(cells.size(), threads, homes)) {
+  for (size_t i = 0; i < cells.size(); ++i) {
     places_[i].cell = cells[i];
-    places_[i].home = (homes.empty() ? uint32_t(i) : homes[i % homes.size()]) % count;
+    places_[i].progress = cells[i]->progress();
   }
-  for (uint32_t t = 1; t < count; ++t) helpers_.emplace_back([this, t] { help(t); });
+  for (uint32_t t = 1; t < lists_.num_lists(); ++t) helpers_.emplace_back([this, t] { help(t); });
 }
 
 CellPool::~CellPool() {
-  window_.store(kEnd, std::memory_order_release);
-  window_.notify_all();
+  window_.round.store(kEnd, std::memory_order_release);
+  window_.round.notify_all();
   for (std::thread& helper : helpers_) helper.join();
 }
 
-void CellPool::advance(Cycle from, Cycle until) {
-  from_ = from;
-  until_ = until;
-  left_.store(num_places_, std::memory_order_relaxed);
-  const uint64_t window = window_.load(std::memory_order_relaxed) + 1;
-  window_.store(window, std::memory_order_release);
-  window_.notify_all();
-  work(0, window);
-  for (uint64_t left = left_.load(std::memory_order_acquire); left != 0;) left = wait_change(left_, left);
-  rethrow();
+bool CellPool::advance(Cycle from, Cycle until) {
+  window_.from = from;
+  window_.until = until;
+  left_.store(lists_.num_tasks(), std::memory_order_relaxed);
+  const uint64_t round = window_.round.load(std::memory_order_relaxed) + 1;
+  window_.round.store(round, std::memory_order_release);
+  window_.round.notify_all();
+  work(0, round);
+  const uint64_t happened = wait_until(left_, [](uint64_t left) { return left % kMoved == 0; });
+  if (happened >= kThrown) rethrow();
+  return happened != 0;
+}
+
+bool CellPool::advance_alone(Cycle from, Cycle until) {
+  window_.from = from;
+  window_.until = until;
+  uint64_t happened = 0;
+  for (uint32_t i = 0; i < lists_.num_tasks(); ++i) happened += advance(places_[i]);
+  if (happened >= kThrown) rethrow();
+  return happened != 0;
 }
 
 void CellPool::help(uint32_t thread) {
   for (uint64_t seen = 0;;) {
-    seen = wait_change(window_, seen);
+    seen = wait_until(window_.round, [seen](uint64_t round) { return round != seen; });
     if (seen == kEnd) return;
     work(thread, seen);
   }
 }
 
-void CellPool::work(uint32_t thread, uint64_t window) {
-  for (size_t i = 0; i < num_places_; ++i)
-    if (places_[i].home == thread) take(places_[i], window);
-  for (size_t i = 0; i < num_places_; ++i) take(places_[i], window);
+// Advances the thread's own cells, and then those of other threads that nobody has taken. Every cell is taken
+// once in a round, so a thread that comes after the end of its round finds none.
+void CellPool::work(uint32_t thread, uint64_t round) {
+  uint64_t change = 0;
+  for (uint32_t k = 0; k < lists_.num_lists(); ++k) {
+    const uint32_t list = (thread + k) % lists_.num_lists();
+    for (uint32_t task; (task = lists_.take(list, round)) != TaskLists::kNone;)
+      change += advance(places_[task]) - 1;
+  }
+  if (change == 0) return;
+  if ((left_.fetch_add(change, std::memory_order_acq_rel) + change) % kMoved == 0) left_.notify_one();
 }
 
-// Takes the cell and advances it, unless another thread has taken it for this window. Every cell is taken
-// once in each window, so a thread that comes after the end of its window finds no cell to take.
-void CellPool::take(Place& place, uint64_t window) {
-  uint64_t before = window - 1;
-  if (place.taken.load(std::memory_order_relaxed) != before) return;
-  if (!place.taken.compare_exchange_strong(before, window, std::memory_order_acq_rel)) return;
+// Advances a cell, and returns what has happened in it as left_ counts it.
+uint64_t CellPool::advance(Place& place) {
   try {
-    place.cell->advance(from_, until_);
+    place.cell->advance(window_.from, window_.until);
   } catch (...) {
     place.error = std::current_exception();
+    return kThrown;
   }
-  if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_one();
+  const uint64_t progress = place.cell->progress();
+  return std::exchange(place.progress, progress) == progress ? 0 : kMoved;
 }
 
 void CellPool::rethrow() {
   std::exception_ptr first;
-  for (size_t i = 0; i < num_places_; ++i)
+  for (size_t i = 0; i < lists_.num_tasks(); ++i)
     if (std::exception_ptr error = std::exchange(places_[i].error, nullptr); error && !first) first = error;
   if (first) std::rethrow_exception(first);
 }

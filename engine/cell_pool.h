@@ -10,13 +10,14 @@
 
 #include "base/types.h"
 #include "engine/engine.h"
+#include "engine/task_lists.h"
 
 namespace glint {
 
 // Advances all cells by a window at a time, on several threads. The caller is one of the threads, and the
 // others live as long as the pool. A thread takes its own cells first, because they stay in its caches, and
-// then the cells that no thread has taken yet. Which thread advances a cell never shows in a result: a cell
-// reads and writes its own state only, and each window ends before the next begins.
+// then the cells of other threads that nobody has taken yet. Which thread advances a cell never shows in a
+// result: a cell reads and writes its own state only, and each window ends before the next begins.
 class CellPool {
  public:
   // Starts the threads. Cell i belongs to thread homes[i] modulo `threads`. Without homes, the cells are
@@ -26,31 +27,36 @@ class CellPool {
   CellPool(const CellPool&) = delete;
   CellPool& operator=(const CellPool&) = delete;
 
-  // Advances every cell and returns when all have advanced. If cells have thrown, it rethrows the exception
-  // of the first of them in the order of the cells.
-  void advance(Cycle from, Cycle until);
+  // Advances every cell, and returns whether any has moved (Cell::progress). If cells have thrown, it
+  // rethrows the exception of the first of them in the order of the cells.
+  bool advance(Cycle from, Cycle until);
+  // Does the same on the caller's thread alone.
+  bool advance_alone(Cycle from, Cycle until);
   uint32_t num_threads() const { return uint32_t(helpers_.size()) + 1; }
 
  private:
-  // Holds a cell and whether it is taken. Each place has a cache line of its own, because several threads
-  // write to neighbouring places.
+  // Has a cache line of its own, because several threads write to neighbouring places.
   struct alignas(64) Place {
     Cell* cell = nullptr;
-    uint32_t home = 0;
-    std::atomic<uint64_t> taken{0};  // the last window for which a thread took the cell
+    uint64_t progress = 0;  // after the last window
     std::exception_ptr error;
   };
 
   void help(uint32_t thread);
-  void work(uint32_t thread, uint64_t window);
-  void take(Place& place, uint64_t window);
+  void work(uint32_t thread, uint64_t round);
+  uint64_t advance(Place& place);
   void rethrow();
 
   std::unique_ptr<Place[]> places_;
-  const size_t num_places_;
-  Cycle from_ = 0, until_ = 0;                   // the bounds of the present window
-  alignas(64) std::atomic<uint64_t> window_{0};  // number of the window, or kEnd: the threads end
-  alignas(64) std::atomic<uint64_t> left_{0};    // number of cells that have not advanced yet
+  TaskLists lists_;
+  // The bounds of the present window lie beside its number, because every thread reads all three.
+  struct alignas(64) Window {
+    std::atomic<uint64_t> round{0};  // or kEnd: the threads end
+    Cycle from = 0, until = 0;
+  } window_;
+  // This is the number of cells that have not advanced yet, and above it lie the numbers of cells that have
+  // moved and that have thrown.
+  alignas(64) std::atomic<uint64_t> left_{0};
   std::vector<std::thread> helpers_;
 };
 

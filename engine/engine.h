@@ -22,6 +22,9 @@ class ChannelBase {
   virtual ~ChannelBase() = default;
   // Makes the messages that were sent in the last window visible to the consumer.
   virtual void deliver() = 0;
+  // Lets the consumer call deliver() while producers already send messages of the next window. `windows`
+  // counts windows, and it changes between two windows only. Returns whether the channel can do that.
+  virtual bool follow(const uint64_t* windows) { return static_cast<void>(windows), false; }
   // Returns the earliest arrival of all messages, delivered or not. Returns kNever when there are none.
   virtual Cycle next_arrival() const = 0;
 };

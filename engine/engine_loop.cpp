@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cstdint>
 #include <fmt/format.h>
+#include <utility>
 
+#include "base/check.h"
 #include "base/diagnostics.h"
 #include "base/host_threads.h"
 
@@ -16,10 +18,61 @@ uint32_t EngineLoop::num_threads(uint32_t threads, size_t cells) {
   return std::min(host_threads(threads), uint32_t(std::max<size_t>(cells, 1)));
 }
 
+class EngineLoop::Receiver final : public Cell {
+ public:
+  explicit Receiver(Cell& cell) : cell_(cell) {}
+  const Cell& cell() const { return cell_; }
+  void receive(ChannelBase& channel) { channels_.push_back(&channel); }
+
+  void advance(Cycle from, Cycle until) override {
+    for (ChannelBase* channel : channels_) channel->deliver();
+    cell_.advance(from, until);
+  }
+  Cycle next_event(Cycle from) const override { return cell_.next_event(from); }
+  bool finished() const override { return cell_.finished(); }
+  uint64_t progress() const override { return cell_.progress(); }
+  std::string describe_stall() const override { return cell_.describe_stall(); }
+
+ private:
+  Cell& cell_;
+  std::vector<ChannelBase*> channels_;
+};
+
+EngineLoop::EngineLoop(Options options) : options_(std::move(options)) {
+}
+EngineLoop::~EngineLoop() = default;
+
+void EngineLoop::add(Cell& cell) {
+  cells_.push_back(&cell);
+  receivers_.push_back(std::make_unique<Receiver>(cell));
+}
+
+void EngineLoop::add(ChannelBase& channel) {
+  channels_.push_back(&channel);
+  delivered_between_.push_back(&channel);
+}
+
+void EngineLoop::set_receiver(ChannelBase& channel, const Cell& cell) {
+  const auto receiver = std::find_if(receivers_.begin(), receivers_.end(),
+                                     [&](const auto& each) { return &each->cell() == &cell; });
+  GLINT_CHECK(receiver != receivers_.end(), "the receiver of a channel is no cell of the machine");
+  if (!channel.follow(&windows_)) return;
+  std::erase(delivered_between_, &channel);
+  (*receiver)->receive(channel);
+}
+
+void EngineLoop::start_pool() {
+  const uint32_t threads =
+      num_threads(options_.threads, std::min<size_t>(cells_.size(), options_.most_threads));
+  if (threads <= 1 || pool_) return;
+  std::vector<Cell*> receivers;
+  for (const auto& receiver : receivers_) receivers.push_back(receiver.get());
+  pool_ = std::make_unique<CellPool>(receivers, threads, options_.homes);
+}
+
 Cycle EngineLoop::run(const Between& between, Cycle look_at) {
-  if (const uint32_t threads = num_threads(options_.threads, cells_.size()); threads > 1 && !pool_)
-    pool_ = std::make_unique<CellPool>(cells_, threads, options_.homes);
-  uint64_t last_progress = progress();
+  start_pool();
+  last_progress_ = progress();
   Cycle last_moved = 0;
   for (Cycle now = 0;;) {
     const Next next = between(now);
@@ -38,10 +91,7 @@ Cycle EngineLoop::run(const Between& between, Cycle look_at) {
       }
       now = next_turn;
     }
-    run_turn(now, last_progress);
-    const uint64_t moved = progress();
-    if (moved != last_progress) {
-      last_progress = moved;
+    if (run_turn(now)) {
       last_moved = now;
     } else if (now - last_moved >= options_.watchdog) {
       throw_stuck(now, fmt::format("nothing has moved since cycle {}", last_moved));
@@ -50,20 +100,30 @@ Cycle EngineLoop::run(const Between& between, Cycle look_at) {
   }
 }
 
-void EngineLoop::run_turn(Cycle from, uint64_t progress) {
+// Returns whether any cell has moved in the turn.
+bool EngineLoop::run_turn(Cycle from) {
   // A number of threads that was asked for is used throughout. Only a free choice depends on the pace.
-  const bool in_parallel =
-      pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(), progress));
+  const bool in_parallel = pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(),
+                                                                           [this] { return progress(); }));
   const Cycle end = from + options_.turn, step = options_.window ? options_.window : options_.turn;
-  for (Cycle now = from; now < end; now += step) run_window(now, std::min(now + step, end), in_parallel);
+  bool moved = false;
+  for (Cycle now = from; now < end; now += step)
+    moved |= run_window(now, std::min(now + step, end), in_parallel);
+  if (pool_) return moved;
+  const uint64_t now = progress();
+  return std::exchange(last_progress_, now) != now;
 }
 
-void EngineLoop::run_window(Cycle from, Cycle until, bool in_parallel) {
-  if (in_parallel)
-    pool_->advance(from, until);
+// Returns whether the pool has seen a cell move.
+bool EngineLoop::run_window(Cycle from, Cycle until, bool in_parallel) {
+  ++windows_;
+  bool moved = false;
+  if (pool_)
+    moved = in_parallel ? pool_->advance(from, until) : pool_->advance_alone(from, until);
   else
-    for (Cell* cell : cells_) cell->advance(from, until);
-  for (ChannelBase* channel : channels_) channel->deliver();
+    for (const auto& receiver : receivers_) receiver->advance(from, until);
+  for (ChannelBase* channel : delivered_between_) channel->deliver();
+  return moved;
 }
 
 bool EngineLoop::all_finished() const {
@@ -72,9 +132,14 @@ bool EngineLoop::all_finished() const {
                      [](const ChannelBase* channel) { return channel->next_arrival() == kNever; });
 }
 
+// Returns the earliest event. If there is any in the turn that begins at `from`, it returns such a one,
+// because no turn is skipped then, and asks no more cells.
 Cycle EngineLoop::next_event(Cycle from) const {
   Cycle next = kNever;
-  for (const Cell* cell : cells_) next = std::min(next, cell->next_event(from));
+  for (const Cell* cell : cells_) {
+    next = std::min(next, cell->next_event(from));
+    if (next < from + options_.turn) return next;
+  }
   for (const ChannelBase* channel : channels_) next = std::min(next, channel->next_arrival());
   return next;
 }

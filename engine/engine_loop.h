@@ -32,7 +32,8 @@ class EngineLoop {
     // These are the cycles of a window, at most those of a turn. The last window of a turn ends with the
     // turn. 0 stands for a whole turn.
     Cycle window = 0;
-    std::vector<uint32_t> homes{};  // the threads to which the cells belong (cell_pool.h)
+    std::vector<uint32_t> homes{};         // the threads to which the cells belong (cell_pool.h)
+    uint32_t most_threads = ~uint32_t{0};  // more threads than these would not be faster
   };
   enum class Next { Continue, NothingMore, Stop };
   // Is called at the start of each turn, and says how to go on. Continue means that more work may be handed
@@ -40,9 +41,13 @@ class EngineLoop {
   // instance because of a fault.
   using Between = std::function<Next(Cycle now)>;
 
-  explicit EngineLoop(Options options) : options_(std::move(options)) {}
-  void add(Cell& cell) { cells_.push_back(&cell); }
-  void add(ChannelBase& channel) { channels_.push_back(&channel); }
+  explicit EngineLoop(Options options);
+  ~EngineLoop();
+  void add(Cell& cell);
+  void add(ChannelBase& channel);
+  // Says which cell alone receives the messages of a channel. The thread that advances this cell then
+  // delivers them, where the channel can do that (ChannelBase::follow).
+  void set_receiver(ChannelBase& channel, const Cell& cell);
 
   // Runs to the end, and returns the start of the first turn that was not run. `between` is called for the
   // turn that begins at `look_at` or next after it, even if idle time around it is skipped. Throws
@@ -56,16 +61,23 @@ class EngineLoop {
  private:
   bool all_finished() const;
   Cycle next_event(Cycle from) const;
-  void run_turn(Cycle from, uint64_t progress);
-  void run_window(Cycle from, Cycle until, bool in_parallel);
+  void start_pool();
+  bool run_turn(Cycle from);
+  bool run_window(Cycle from, Cycle until, bool in_parallel);
   uint64_t progress() const;
   [[noreturn]] void throw_stuck(Cycle now, const std::string& why) const;
 
   const Options options_;
+  class Receiver;  // a cell that delivers its channels before it advances
+
   std::vector<Cell*> cells_;
+  std::vector<std::unique_ptr<Receiver>> receivers_;  // one for each cell
   std::vector<ChannelBase*> channels_;
-  std::unique_ptr<CellPool> pool_;  // exists from the first run on; null with one thread
+  std::vector<ChannelBase*> delivered_between_;  // those channels that no receiver delivers
+  std::unique_ptr<CellPool> pool_;               // exists from the first run on; null with one thread
   Pace pace_;
+  uint64_t last_progress_ = 0;        // of all cells after the last turn; unused with a pool
+  alignas(64) uint64_t windows_ = 0;  // Every thread reads this number of windows.
 };
 
 }  // namespace glint

@@ -57,6 +57,8 @@ class MemoryView {
   void load(const Load& load);  // It takes place with commit().
   void load(const LoadTexel& load);
 
+  // Returns whether commit() has anything to do for this core.
+  bool has_effects() const { return !batches_.empty(); }
   // Returns whether this core has written in this turn, so that reads have to ask.
   bool touched() const { return !lines_.empty(); }
   // Returns whether an atomic changes any of the bytes at the turn's end.
@@ -65,8 +67,8 @@ class MemoryView {
   // them.
   const std::byte* read(const std::byte* at, uint32_t bytes, std::span<std::byte, kWidest> scratch) const;
 
-  // Ends the turn for all cores of the machine. `views` are in the order of the cores. Returns whether any
-  // byte of memory has changed.
+  // Ends the turn for all cores of the machine. `views` are those that have effects, in the order of the
+  // cores. Returns whether any byte of memory has changed.
   static bool commit(std::span<MemoryView* const> views);
 
  private:

@@ -37,6 +37,8 @@ class MemorySystem {
 
   std::vector<Cell*> cells();  // returns the partitions, then the routers of the network
   std::vector<ChannelBase*> channels() { return network_->channels(); }
+  // Returns which of them only one core or one slice receives from. A slice belongs to map().partition_of().
+  Network::Inputs inputs() { return network_->inputs(); }
   // Returns the longest window that the engine may use, which is at least 1: no message arrives sooner.
   Cycle shortest_latency() const { return network_->shortest_latency(); }
 

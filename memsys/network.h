@@ -44,6 +44,12 @@ class Network {
   virtual SlicePort slice_port(uint16_t slice) = 0;
   virtual std::vector<Cell*> cells() { return {}; }
   virtual std::vector<ChannelBase*> channels() = 0;
+  // Returns those of the channels whose messages only a core, or a slice, receives: those of each core and
+  // those of each slice. What is not there is delivered between windows.
+  struct Inputs {
+    std::vector<std::vector<ChannelBase*>> of_core, of_slice;
+  };
+  virtual Inputs inputs() { return {}; }
   virtual Cycle shortest_latency() const = 0;  // at least 1
 };
 

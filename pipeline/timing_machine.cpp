@@ -35,6 +35,12 @@ uint32_t stack_bytes_per_warp(const GpuParams& params, const exec::World& world)
   return traces ? rt::RtUnit::shared_bytes_per_warp(params.rt) : 0;
 }
 
+// Returns the number of threads beyond which threads wait more than they help. Choice: a core's work in a
+// window is the least that a thread can do, and a partition has a tenth to a half of it.
+uint32_t most_threads(const GpuParams& params) {
+  return params.cores + (params.memory.dram.channels + 3) / 4;
+}
+
 // Checks the parameters before anything is built from them.
 const GpuParams& checked(const GpuParams& params, const exec::World& world) {
   Diagnostics diagnostics;
@@ -61,6 +67,7 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
       world_(world),
       reserves_(*world.memory),
       memory_(params_.memory, params_.cores, params_.clock_mhz, &root_),
+      news_lines_((params_.cores + sizeof(NewsLine) - 1) / sizeof(NewsLine)),
       endless_(*world.image),
       effects_(params_.core.livelock_budget),
       turnover_(params_.core.turnover_budget),
@@ -68,7 +75,8 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
                .no_skip = no_skip,
                .threads = host.threads,
                .window = host.window,
-               .homes = host.homes}) {
+               .homes = host.homes,
+               .most_threads = most_threads(params_)}) {
   const Cycle turn = params_.cores > 1 ? memory_.shortest_latency() : 0;
   const auto reserve = [&](uint64_t bytes) { return bytes ? reserves_.take(bytes) : Address{0}; };
   const Address code = reserve(core::CoreCell::code_bytes(params_.core, world)),
@@ -87,28 +95,39 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
     if (const uint64_t bytes = rt::RtUnit::pool_bytes(params_.rt)) rt.ray_states = reserves_.take(bytes);
     rt_units_.push_back(std::make_unique<rt::RtUnit>(params_.rt, rt));
     const Address local = reserves_.take(core::CoreCell::local_bytes(params_.core, world));
-    const core::CoreCell::Context context{.world = world,
-                                          .l1 = memory_.l1(i),
-                                          .rt = *rt_units_.back(),
-                                          .local_physical = local,
-                                          .parent = &root_,
-                                          .name = name,
-                                          .no_skip = no_skip,
-                                          .index = i,
-                                          .cores = params_.cores,
-                                          .clock_mhz = params_.clock_mhz,
-                                          .tables = rt.tables.base,
-                                          .places = {code, constants},
-                                          .turn = turn,
-                                          .shared_per_warp = shared_per_warp,
-                                          .table = table};
+    const core::CoreCell::Context context{
+        .world = world,
+        .l1 = memory_.l1(i),
+        .rt = *rt_units_.back(),
+        .local_physical = local,
+        .parent = &root_,
+        .name = name,
+        .no_skip = no_skip,
+        .index = i,
+        .cores = params_.cores,
+        .clock_mhz = params_.clock_mhz,
+        .tables = rt.tables.base,
+        .places = {code, constants},
+        .turn = turn,
+        .shared_per_warp = shared_per_warp,
+        .news = &news_lines_[i / sizeof(NewsLine)].bytes[i % sizeof(NewsLine)],
+        .table = table};
     cores_.push_back(std::make_unique<core::CoreCell>(params_.core, context));
     access_latency_.add(cores_.back()->latencies());
     engine_.add(*cores_.back());
-    if (exec::MemoryView* view = cores_.back()->view()) views_.push_back(view);
   }
+  connect();
+}
+
+void TimingMachine::connect() {
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
+  const mem::Network::Inputs inputs = memory_.inputs();
+  for (uint32_t i = 0; i < inputs.of_core.size(); ++i)
+    for (ChannelBase* channel : inputs.of_core[i]) engine_.set_receiver(*channel, *cores_[i]);
+  for (uint32_t i = 0; i < inputs.of_slice.size(); ++i)
+    for (ChannelBase* channel : inputs.of_slice[i])
+      engine_.set_receiver(*channel, memory_.partition(memory_.map().partition_of(i)));
 }
 
 Address Reserves::take(uint64_t bytes) {
@@ -142,11 +161,10 @@ Cycle TimingMachine::run(const LaunchWatch& watch, LaunchPart* part) {
   Cycle next_look = 0;
   const Cycle quiet = engine_.run(
       [&](Cycle now) {
-        const bool memory_changed = exec::MemoryView::commit(views_);
-        for (const auto& core : cores_)
-          if (!fault && core->fault()) fault = &*core->fault();
+        const News news = commit_effects();
+        fault = news.fault;
         if (fault) return EngineLoop::Next::Stop;
-        refuse_livelock(now, memory_changed);
+        refuse_livelock(now, news.memory_changed);
         if (may_have_no_end) refuse_endless_launch(now);
         if (const LaunchEnd end = early_end(watch, now); end != LaunchEnd::Whole) {
           note_progress(now);
@@ -159,7 +177,7 @@ Cycle TimingMachine::run(const LaunchWatch& watch, LaunchPart* part) {
           }
         }
         if (part) part->before_start(now, dispatcher.num_dispatched());
-        dispatcher.dispatch(now);
+        if (news.has_room) dispatcher.dispatch(now);
         if (now >= next_look) {
           next_look = now + kLookPeriod;
           if (may_be_endless) refuse_endless_loops();
@@ -179,6 +197,20 @@ Cycle TimingMachine::run(const LaunchWatch& watch, LaunchPart* part) {
   if (end_ != LaunchEnd::Whole) cycles = quiet;
   finish(quiet, cycles);
   return cycles;
+}
+
+// Lets all cores see what each has done to memory, and returns what is new.
+TimingMachine::News TimingMachine::commit_effects() {
+  News all;
+  views_.clear();
+  for (uint32_t i = 0; i < num_cores(); ++i) {
+    const uint8_t news = news_lines_[i / sizeof(NewsLine)].bytes[i % sizeof(NewsLine)];
+    if (news & core::CoreCell::kHasEffects) views_.push_back(cores_[i]->view());
+    if (news & core::CoreCell::kHasFault && !all.fault) all.fault = &*cores_[i]->fault();
+    all.has_room |= (news & core::CoreCell::kHasRoom) != 0;
+  }
+  all.memory_changed = exec::MemoryView::commit(views_);
+  return all;
 }
 
 // Completes the statistics. A launch that was ended early leaves messages on their way, so only a whole one

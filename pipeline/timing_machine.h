@@ -2,6 +2,7 @@
 // system.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -84,6 +85,13 @@ class TimingMachine {
   uint32_t num_cores() const { return uint32_t(cores_.size()); }
 
  private:
+  // Says what the cores have done in the last turn that concerns others.
+  struct News {
+    bool memory_changed = false, has_room = false;
+    const exec::Fault* fault = nullptr;  // of the first core that has one
+  };
+  News commit_effects();
+  void connect();
   void refuse_livelock(Cycle now, bool memory_changed);
   void refuse_endless_launch(Cycle now);
   void refuse_endless_loops() const;
@@ -113,7 +121,12 @@ class TimingMachine {
   std::vector<std::unique_ptr<stats::Group>> rt_groups_;
   std::vector<std::unique_ptr<rt::RtUnit>> rt_units_;
   std::vector<std::unique_ptr<core::CoreCell>> cores_;
-  std::vector<exec::MemoryView*> views_;  // those of all cores; empty when there is one core
+  // These are the cores' bytes of news, in cache lines of their own.
+  struct alignas(64) NewsLine {
+    std::array<uint8_t, 64> bytes{};
+  };
+  std::vector<NewsLine> news_lines_;
+  std::vector<exec::MemoryView*> views_;  // those of the cores that have effects, while these are committed
   const exec::EndlessLoops endless_;
   ProgressWatch effects_, turnover_;
   LaunchEnd end_ = LaunchEnd::Whole;

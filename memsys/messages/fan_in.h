@@ -15,11 +15,11 @@ namespace glint::mem {
 template <class Message>
 class FanIn final : public ChannelBase {
  public:
-  explicit FanIn(size_t producers) : outboxes_(producers) {}
+  explicit FanIn(size_t producers) : outboxes_{Outboxes(producers), Outboxes(producers)} {}
 
   // Sends a message. `arrival` may not decrease from one message of a producer to its next.
   void send(size_t producer, Cycle arrival, const Message& message) {
-    std::vector<Timed>& sent = outboxes_[producer].sent;
+    std::vector<Timed>& sent = outboxes_[*windows_ % 2][producer].sent;
     GLINT_DCHECK(sent.empty() || sent.back().arrival <= arrival, "messages must be sent in order");
     sent.push_back({arrival, uint32_t(producer), message});
   }
@@ -39,7 +39,8 @@ class FanIn final : public ChannelBase {
   }
   size_t waiting() const {
     size_t n = inbox_.size() - head_;
-    for (const Outbox& box : outboxes_) n += box.sent.size();
+    for (const Outboxes& side : outboxes_)
+      for (const Outbox& box : side) n += box.sent.size();
     return n;
   }
 
@@ -51,7 +52,8 @@ class FanIn final : public ChannelBase {
       inbox_.erase(inbox_.begin(), inbox_.begin() + ptrdiff_t(head_));
       head_ = 0;
     }
-    for (Outbox& box : outboxes_) {
+    for (Outbox& box : outboxes_[(*windows_ + lag_) % 2]) {
+      if (box.sent.empty()) continue;
       for (const Timed& timed : box.sent) insert(timed);
       box.sent.clear();
     }
@@ -59,9 +61,15 @@ class FanIn final : public ChannelBase {
   }
   Cycle next_arrival() const override {
     Cycle next = arrival();
-    for (const Outbox& box : outboxes_)
-      if (!box.sent.empty()) next = std::min(next, box.sent.front().arrival);
+    for (const Outboxes& side : outboxes_)
+      for (const Outbox& box : side)
+        if (!box.sent.empty()) next = std::min(next, box.sent.front().arrival);
     return next;
+  }
+  bool follow(const uint64_t* windows) override {
+    windows_ = windows;
+    lag_ = 1;
+    return true;
   }
 
  private:
@@ -78,6 +86,8 @@ class FanIn final : public ChannelBase {
   struct alignas(64) Outbox {
     std::vector<Timed> sent;
   };
+  using Outboxes = std::vector<Outbox>;
+  static constexpr uint64_t kNoWindow = 0;
 
   void find_arrival() { arrival_ = head_ < inbox_.size() ? inbox_[head_].arrival : kNever; }
   // Inserts a message from the back, because the messages of one window lie close together in time.
@@ -88,7 +98,11 @@ class FanIn final : public ChannelBase {
     inbox_[i] = timed;
   }
 
-  std::vector<Outbox> outboxes_;
+  // Producers fill one side in even windows and the other one in odd windows. A consumer that follows the
+  // windows takes what lies in the other side, which nobody fills meanwhile.
+  Outboxes outboxes_[2];
+  const uint64_t* windows_ = &kNoWindow;
+  uint64_t lag_ = 0;  // 1 when the consumer takes the messages of the window before
   std::vector<Timed> inbox_;
   size_t head_ = 0;
   Cycle arrival_ = kNever;  // of the first message in the inbox

@@ -69,6 +69,13 @@ class Crossbar final : public Network {
     for (const auto& channel : credits_) out.push_back(channel.get());
     return out;
   }
+  Inputs inputs() override {
+    Inputs out;
+    for (const auto& channel : requests_) out.of_slice.push_back({channel.get()});
+    for (const auto& channel : replies_) out.of_core.push_back({channel.get()});
+    for (size_t c = 0; c < credits_.size(); ++c) out.of_core[c].push_back(credits_[c].get());
+    return out;
+  }
   // Any message takes at least one cycle of a port before its way through the switch.
   Cycle shortest_latency() const override {
     return 1 + std::min(params_.request_latency, params_.reply_latency);

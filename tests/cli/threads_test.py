@@ -62,7 +62,7 @@ FUNCTIONAL = {
 class Threads(GlintTest):
     def same_files(self, arguments, files):
         said = {}
-        for threads in (1, 2, 4, 8):
+        for threads in (1, 2, 4, 8, 16):
             done = self.glint("run", *arguments, "--threads", threads, "--out", f"t{threads}")
             self.assertEqual(done.returncode, 0, done.stderr)
             said[threads] = done.stderr
@@ -70,7 +70,7 @@ class Threads(GlintTest):
         for name in files:
             expected = (self.folder / "t1" / name).read_bytes()
             self.assertGreater(len(expected), 0)
-            for threads in (2, 4, 8):
+            for threads in (2, 4, 8, 16):
                 self.assertEqual((self.folder / f"t{threads}" / name).read_bytes(), expected, f"{name} with {threads} threads")
 
     def test_a_path_traced_frame_has_the_same_picture_statistics_series_and_profile(self):

@@ -100,6 +100,29 @@ TEST_CASE("neither threads nor windows nor homes change what cells tell each oth
     }
 }
 
+TEST_CASE("a pool says whether a cell has moved, on several threads and on one") {
+  RingCell moves(nullptr, nullptr, 1, 1), rests(nullptr, nullptr, 1, 1);
+  CellPool pool({&rests, &moves}, 2);
+  CHECK(pool.advance(0, 5));
+  CHECK_FALSE(pool.advance(0, 5));  // The cells' progress is the end of the window.
+  CHECK(pool.advance_alone(5, 6));
+  CHECK_FALSE(pool.advance(0, 6));
+  CHECK_FALSE(pool.advance_alone(0, 6));
+}
+
+TEST_CASE("each task of a list is taken once in a round, and none after it") {
+  TaskLists lists({{4, 2}, {}, {7}});
+  CHECK(lists.num_tasks() == 3);
+  for (uint64_t round = 1; round < 4; ++round) {
+    CHECK(lists.take(0, round) == 4);
+    CHECK(lists.take(0, round) == 2);
+    CHECK(lists.take(0, round) == TaskLists::kNone);
+    CHECK(lists.take(1, round) == TaskLists::kNone);
+    CHECK(lists.take(2, round) == 7);
+    if (round > 1) CHECK(lists.take(0, round - 1) == TaskLists::kNone);
+  }
+}
+
 TEST_CASE("a turn is cut into windows that end with it") {
   RingCell cell(nullptr, nullptr, 1, 25);
   EngineLoop engine({.turn = 20, .window = 8});
@@ -113,13 +136,15 @@ TEST_CASE("a turn is cut into windows that end with it") {
 }
 
 TEST_CASE("trying several threads stops when they are slower, and goes on when they are faster") {
-  const auto parallel_windows = [](int serial_cost, int parallel_cost) {
+  // Returns how many windows run on several threads in the first two trials and the stays after them.
+  const auto parallel_windows = [](int serial_cost, int parallel_cost, uint32_t serial_trial,
+                                   uint32_t stays) {
     Pace pace;
     Pace::Time now{};
     uint64_t progress = 0;
     uint32_t parallel = 0;
-    for (uint32_t i = 0; i < 2 * (Pace::kStay + 2 * Pace::kTrial); ++i) {
-      const bool in_parallel = pace.in_parallel(now, progress);
+    for (uint32_t i = 0; i < stays * Pace::kStay + 2 * (Pace::kTrial + serial_trial); ++i) {
+      const bool in_parallel = pace.in_parallel(now, [&] { return progress; });
       parallel += in_parallel;
       now += std::chrono::microseconds(in_parallel ? parallel_cost : serial_cost);
       progress += 100;
@@ -127,8 +152,10 @@ TEST_CASE("trying several threads stops when they are slower, and goes on when t
     return parallel;
   };
 
-  CHECK(parallel_windows(100, 120) == 2 * Pace::kTrial);
-  CHECK(parallel_windows(100, 80) == 2 * (Pace::kTrial + Pace::kStay));
+  // At first the answer counts as one thread's, so that one thread stays for 2 and then 4 lengths.
+  CHECK(parallel_windows(100, 120, Pace::kTrial, 2 + 4) == 2 * Pace::kTrial);
+  CHECK(parallel_windows(100, 80, Pace::kTrial, 1 + 2) == 2 * Pace::kTrial + 3 * Pace::kStay);
+  CHECK(parallel_windows(100, 10, Pace::kLeast, 1 + 2) == 2 * Pace::kTrial + 3 * Pace::kStay);
 }
 
 }  // namespace glint

@@ -136,6 +136,33 @@ TEST_CASE("a fan-in shows nothing before delivery but counts it as the next arri
   CHECK(in.ready(5));
 }
 
+TEST_CASE("a fan-in that follows windows delivers the messages of the window before and no later ones") {
+  FanIn<int> in(2);
+  uint64_t window = 1;
+  REQUIRE(in.follow(&window));
+  in.send(0, 20, 1);
+  in.deliver();
+  CHECK(in.arrival() == kNever);
+  CHECK(in.next_arrival() == 20);
+  ++window;
+  in.send(1, 30, 2);  // A producer may come before the consumer.
+  in.deliver();
+  CHECK(in.front() == 1);
+  CHECK(in.waiting() == 2);
+  in.send(0, 35, 3);
+  in.pop();
+  CHECK(in.arrival() == kNever);
+  CHECK(in.next_arrival() == 30);
+  ++window;
+  in.deliver();
+  CHECK(in.front() == 2);
+  in.pop();
+  CHECK(in.front() == 3);
+  ++window;
+  in.deliver();
+  CHECK(in.waiting() == 1);
+}
+
 TEST_CASE("a fan-in tells of the messages that come next, and of no more than asked") {
   FanIn<int> in(2);
   in.send(1, 7, 2);
