@@ -7,11 +7,13 @@ import signal
 import subprocess
 import sys
 import time
+from unittest import mock
 
 from glint_case import GLINT, ROOT, GlintTest, main
 
 sys.path.insert(0, str(ROOT / "python"))
 sys.dont_write_bytecode = True
+from glint.paper import running  # noqa: E402
 from glint.paper.command import parser  # noqa: E402
 from glint.paper.plan import Options, plan  # noqa: E402
 
@@ -59,9 +61,15 @@ class Paper(GlintTest):
         done = self.glint(*TRIAL, GLINT_ASSETS="")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(ended, {path: path.stat().st_mtime_ns for path in first.glob("*/workload.json")})
-        self.assertRegex(done.stderr, r"\[20/20\] \S+ \(.*\)(, about \d+ \w+ left)?\n")
+        self.assertRegex(done.stderr, r"\[24/24\] \S+ \(.*\)(, about \d+ \w+ left)?\n")
         self.assertRegex(done.stdout, r"(?m)^mobile, generated: \d+ holds, \d+ does not hold, \d+ cannot be judged$")
         self.check_page((self.folder / "out/report.html").read_text())
+
+    def test_a_command_whose_code_is_lost_in_the_moment_of_ctrl_c_has_not_succeeded(self):
+        process = mock.Mock()
+        process.wait.side_effect = [KeyboardInterrupt, 0]
+        with mock.patch.object(running.subprocess, "Popen", return_value=process):
+            self.assertEqual(running._call(["glint"]), 130)
 
     def check_page(self, page):
         self.assertEqual([anchor for anchor in re.findall(r'<h2 id="([^"]+)"', page) if anchor != "missing"], ANCHORS)

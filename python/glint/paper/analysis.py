@@ -11,7 +11,7 @@ import pathlib
 from typing import Any, TextIO
 
 from ..derived import metrics
-from .plan import DESKTOP_OF, LARGE_MACHINES, MACHINES
+from .plan import COMPUTE_MACHINES, DESKTOP_OF, JUDGED_MACHINES
 from .running import Runs, ask
 from .statements import Table, evaluate, flips, read_series
 
@@ -73,7 +73,7 @@ def analyse(runs: Runs, glint: str, out: TextIO) -> Findings:
         only = ["--statistics-only"] if machine not in ("mobile", "desktop") else []  # The interval model knows no other of these machines.
         assets = ["--assets", one.words[one.words.index("--assets") + 1]] if "--assets" in one.words else []
         call(one.name, "models", ["model", str(runs.path(one.name)), *only, *assets, "--out", f"{place}/models.csv"])
-    for machine in LARGE_MACHINES:
+    for machine in COMPUTE_MACHINES:
         tables = [runs.path(f"{name}/{machine}") / "metrics.csv" for name in ("generated", "compute")]
         if all(table.is_file() for table in tables):
             table = found.folder / f"joint-{machine}.csv"
@@ -90,7 +90,7 @@ def verdicts(runs: Runs) -> dict[str, list[tuple[int, str, str, str]]]:
     """Returns the verdicts of every machine that has a desktop, by form and machine. A suite of fewer than 46 workloads stands for all."""
     out = {}
     for form in ("generated", "files"):
-        for machine in (name for name in MACHINES if name in DESKTOP_OF):
+        for machine in JUDGED_MACHINES:
             table = _table(runs.path(f"{form}/{machine}") / "metrics.csv")
             if table is None:
                 continue

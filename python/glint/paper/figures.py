@@ -10,7 +10,7 @@ from typing import Any, Callable, Sequence
 
 from . import drawing
 from .analysis import Findings, series
-from .plan import LARGE_MACHINES, MACHINES, SUBSET, VARIANTS
+from .plan import DESKTOP_OF, JUDGED_MACHINES, MACHINES, SUBSET, VARIANTS
 from .running import Runs
 from .statements import Missing, Table, correlation
 
@@ -182,7 +182,7 @@ def figure_4(scene: Scene) -> str:
 
 def figure_6(scene: Scene) -> str:
     out = ""
-    for machine in LARGE_MACHINES:
+    for machine in JUDGED_MACHINES:
         found = series(scene.runs, machine)
         for metric in ("rt_warps", "ipc", "l1d_miss_rate") if found else ():
             out += f"<h3>{machine}: {metric}</h3>" + drawing.lines({name: [(row["cycle"], row[metric]) for row in rows] for name, rows in found.items()}, "cycles")
@@ -202,13 +202,13 @@ def figure_7(scene: Scene) -> str:
         upper = drawing.bars(names, {metric: column(table, names, metric) for metric in ("triangles", "procedurals", "instances")}, logarithmic=True)
         lower = drawing.bars(names, {"BVH depth": column(table, names, "bvh_depth")}) + drawing.bars(names, {"cycles": column(table, names, "cycles")})
         return f'<div class="scroll">{upper}{lower}</div>'
-    return each(scene, ("mobile", "vulkan-sim-mobile"), make)
+    return each(scene, JUDGED_MACHINES, make)
 
 
 def figure_8(scene: Scene) -> str:
     kinds = ("alu", "sfu", "mem", "tex", "ctrl", "rt")
     counts, latency = bars_of(*(f"ins_{kind}%" for kind in kinds), stacked=True), bars_of("lat_alu%", "lat_mem%", "lat_rt%", stacked=True)
-    return each(scene, LARGE_MACHINES, lambda table: counts(table) + latency(table))
+    return each(scene, JUDGED_MACHINES, lambda table: counts(table) + latency(table))
 
 
 def figure_11(scene: Scene) -> str:
@@ -228,15 +228,15 @@ def figure_11(scene: Scene) -> str:
                 for part in parts.values():
                     part.append(None)
         return f'<div class="scroll">{drawing.bars(names, parts, stacked=True)}</div>'
-    return each(scene, LARGE_MACHINES, make)
+    return each(scene, JUDGED_MACHINES, make)
 
 
 def figure_14(scene: Scene) -> str:
     out = ""
     for form in ("generated", "files"):
         tables = {name.split(",")[0]: table for name, table in scene.tables(*MACHINES) if name.endswith(form)}
-        for machine in LARGE_MACHINES:
-            pair = {name: tables[name] for name in (machine, machine.replace("mobile", "desktop")) if name in tables}
+        for machine in JUDGED_MACHINES:
+            pair = {name: tables[name] for name in (machine, DESKTOP_OF[machine]) if name in tables}
             if pair:
                 names = by_triangles(next(iter(pair.values())))
                 out += f'<h3>thread IPC, {html.escape(form)}</h3><div class="scroll">' + drawing.bars(names, {name: column(table, names, "thread_ipc") for name, table in pair.items()}) + "</div>"
@@ -280,7 +280,6 @@ def figure_15(scene: Scene) -> str:
     return text + grid(["runs", "model", "workloads", "R2 of cycles", "R2 of the subset's cycles", "R2 of IPC", "mean error"], rows) + pictures if rows else ""
 
 
-_BOTH = ("mobile", "vulkan-sim-mobile")
 SECTIONS: tuple[tuple[str, str, Callable[[Scene], str]], ...] = (
     ("table-1", "Table 1: scenes", table_1),
     ("table-2", "Table 2: the subset", table_2),
@@ -291,11 +290,11 @@ SECTIONS: tuple[tuple[str, str, Callable[[Scene], str]], ...] = (
     ("figure-6", "Figure 6: over time", figure_6),
     ("figure-7", "Figure 7: geometry, depth and time", figure_7),
     ("figure-8", "Figure 8: instructions and their latency, %", figure_8),
-    ("figure-9", "Figure 9: occupancy and efficiency of RT units, SIMT efficiency, %", lambda scene: each(scene, _BOTH, bars_of("rt_occupancy", "rt_efficiency", "simt_efficiency", scale=100))),
-    ("figure-10", "Figure 10: traversal ratio", lambda scene: each(scene, _BOTH, bars_of("traversal_ratio"))),
+    ("figure-9", "Figure 9: occupancy and efficiency of RT units, SIMT efficiency, %", lambda scene: each(scene, JUDGED_MACHINES, bars_of("rt_occupancy", "rt_efficiency", "simt_efficiency", scale=100))),
+    ("figure-10", "Figure 10: traversal ratio", lambda scene: each(scene, JUDGED_MACHINES, bars_of("traversal_ratio"))),
     ("figure-11", "Figure 11: accesses to the L1, %", figure_11),
     ("figure-12", "Figure 12: DRAM utilisation and efficiency, %", lambda scene: each(scene, MACHINES, bars_of("dram_util", "dram_eff", scale=100))),
-    ("figure-13", "Figure 13: what RT units fetch", lambda scene: each(scene, _BOTH, bars_of("acc_internal", "acc_instance_leaf", "acc_quad_leaf", "acc_proc_leaf", stacked=True))),
+    ("figure-13", "Figure 13: what RT units fetch", lambda scene: each(scene, JUDGED_MACHINES, bars_of("acc_internal", "acc_instance_leaf", "acc_quad_leaf", "acc_proc_leaf", stacked=True))),
     ("figure-14", "Figure 14: IPC", figure_14),
     ("figure-15", "Figure 15: analytical models", figure_15),
 )

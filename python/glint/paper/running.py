@@ -73,13 +73,15 @@ def run(runs: Runs, glint: str, jobs: int, out: TextIO = sys.stderr) -> list[str
 
 
 def _call(words: list[str], quiet: bool = False) -> int:
-    """Runs a command to its end, also after Ctrl-C, which the command has got as well."""
+    """Runs a command to its end, also after Ctrl-C, which the command has got as well. The code is then 130: Python may lose that of a command that ends in the moment of the signal."""
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL if quiet else None)
+    stopped = False
     while True:
         try:
-            return process.wait()
+            code = process.wait()
+            return 130 if stopped else code
         except KeyboardInterrupt:
-            continue
+            stopped = True
 
 
 def ask(words: list[str], what: str) -> str | None:
