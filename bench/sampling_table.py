@@ -3,6 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prints the tables of docs/sampling.md: `bench/sampling_table.py GLINT [WORKLOAD ...]`.
 
+With --launches, launches are sampled and not pixels: NAME:SHARE is a compute program or a sequence of frames with
+the sample's size, and NAME/small:SHARE the program with its small input.
+
 Every workload is run whole once, and sampled with several seeds. The table says how far the estimates are from
 the whole runs, how often their 95 % intervals cover them, and how much processor time a sample takes. Runs of
 several processes at a time (--jobs) share caches and clocks of the host, which is why times are those of one
@@ -40,13 +43,16 @@ def totals(folder):
 
 
 def run(glint, workload, folder, arguments):
-    """Runs a workload on one thread. Returns its statistics, and the processor time of the launch alone."""
+    """Runs a workload on one thread. Returns its statistics, the time of the launch alone, and the processor time of the process."""
     command = [glint, "run", workload, "--threads", "1", "--stats", "compact", "--out", str(folder), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+    with tempfile.TemporaryFile("w+") as said, subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said) as process:
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            said.seek(0)
+            sys.exit(f"{' '.join(command)}\n{said.read()}")
     seconds = json.loads((folder / "run.json").read_text())["wall_seconds"]
-    return totals(folder), seconds
+    return totals(folder), seconds, usage.ru_utime + usage.ru_stime
 
 
 def truth_of(sums):
@@ -57,22 +63,30 @@ def truth_of(sums):
     return out
 
 
-def measure(glint, workload, size, share, seeds, settings):
+def measure(glint, workload, options, seeds, settings):
     """Returns rows (workload, seed, name, truth, value, low, high, seconds of the whole run, of the sample)."""
     rows = []
+    frame = ["--size", options.size, "--spp", str(options.spp)]
+    sample, common, share, program = "--sample-pixels", [*frame, *settings], options.share, workload
+    if options.launches:
+        program, _, own = workload.partition(":")
+        program, _, small = program.partition("/")
+        is_scene = "_" in program
+        sample, share = "--sample-launches", own or share
+        common = [*(frame if is_scene else []), *(["--small"] if small else []), *settings]
     with tempfile.TemporaryDirectory() as scratch:
         scratch = pathlib.Path(scratch)
-        common = ["--size", size, *settings]
-        whole, long = run(glint, workload, scratch / "whole", common)
+        # A sample of launches has a first pass, which is no part of any launch, so the whole process counts.
+        whole, *long = run(glint, program, scratch / "whole", common)
+        long = long[options.launches]
         truth = truth_of(whole)
         for seed in seeds:
-            sums, short = run(glint, workload, scratch / f"sample{seed}",
-                              [*common, "--sample-pixels", share, "--sample-seed", str(seed)])
+            sums, *short = run(glint, program, scratch / f"sample{seed}", [*common, sample, share, "--sample-seed", str(seed)])
             for name in NAMES:
                 if (value := sums.get(f"gpu.sample.{name}")) is None or name not in truth:
                     continue
                 rows.append([workload, seed, name, truth[name], value, sums[f"gpu.sample.{name}_low"],
-                             sums[f"gpu.sample.{name}_high"], long, short])
+                             sums[f"gpu.sample.{name}_high"], long, short[options.launches]])
     return rows
 
 
@@ -113,6 +127,7 @@ def main():
     parser.add_argument("--size", default="512x512")
     parser.add_argument("--spp", type=int, default=1, help="samples of a pixel")
     parser.add_argument("--share", default="5%")
+    parser.add_argument("--launches", action="store_true", help="sample launches, and not the pixels of one")
     parser.add_argument("--seeds", type=int, default=3, help="number of samples of each workload")
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -128,15 +143,14 @@ def main():
     names = options.workloads or [line.split()[0] for line in subprocess.run(
         [options.glint, "list", "workloads"], capture_output=True, text=True, check=True).stdout.splitlines()
         if "_" in line.split()[0]]
-    settings = ["--config", options.config, "--spp", str(options.spp), *(word for one in options.set for word in ("--set", one))]
+    settings = ["--config", options.config, *(word for one in options.set for word in ("--set", one))]
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     rows = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool, open(
             options.csv or os.devnull, "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["workload", "seed", "name", "truth", "value", "low", "high", "whole_s", "sample_s"])
-        for some in pool.map(lambda name: measure(options.glint, name, options.size, options.share,
-                                                  seeds, settings), names):
+        for some in pool.map(lambda name: measure(options.glint, name, options, seeds, settings), names):
             rows += some
             writer.writerows(some)
             file.flush()

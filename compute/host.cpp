@@ -40,7 +40,7 @@ void Host::launch(const std::string& name, const std::array<uint32_t, 3>& groups
 
 void Host::run(const std::string& kernel, const std::array<uint32_t, 3>& groups, const exec::World& world) {
   pipeline::RenderResult result =
-      setup_.run ? setup_.run(world) : device_.run(world, setup_.mode, setup_.watch);
+      setup_.run ? setup_.run(kernel, world) : device_.run(world, setup_.mode, setup_.watch);
   launches_.push_back({kernel, groups, result.cycles, result.warp_instructions, result.lane_instructions});
   const pipeline::LaunchEnd end = result.end;
   if (launches_.size() == 1)

@@ -49,8 +49,8 @@ struct HostSetup {
   frontend::ShaderCache* cache = nullptr;
   exec::OnFault on_fault = exec::OnFault::Stop;
   exec::PrintLog* prints = nullptr;
-  // Runs a launch in place of the device, when it is set.
-  std::function<pipeline::RenderResult(const exec::World& world)> run = {};
+  // Runs a launch of a kernel in place of the device, when it is set. Its result needs no statistics.
+  std::function<pipeline::RenderResult(const std::string& kernel, const exec::World& world)> run = {};
 };
 
 // Draws the numbers of an input. The same seed gives the same numbers everywhere.

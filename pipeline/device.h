@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 #include "core/cost_recorder.h"
 #include "memsys/memory_system.h"
@@ -36,6 +37,9 @@ class Device {
   RenderResult run(const exec::World& world, const LaunchMode& mode, const LaunchWatch& watch);
   // Empties the caches.
   void cool() { contents_.clear(); }
+  // Takes what the last timed launch has left, and gives the next one something else to find.
+  mem::MemoryContents take_contents() { return std::exchange(contents_, {}); }
+  void put_contents(mem::MemoryContents&& contents) { contents_ = std::move(contents); }
 
  private:
   void run_timed(const exec::World& world, const LaunchMode& mode, const LaunchWatch& watch,

@@ -28,7 +28,7 @@ void RenderResult::add(const RenderResult& next) {
   rays.box_tests += next.rays.box_tests, rays.triangle_tests += next.rays.triangle_tests;
   faults.add(next.faults);
   wall_seconds += next.wall_seconds;
-  stats->root().take_in(next.statistics());
+  if (stats && next.stats) stats->root().take_in(next.statistics());
 }
 
 RenderResult run_world(const exec::World& world, const GpuParams& gpu, bool timing, bool no_skip,

@@ -3,33 +3,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "base/stats.h"
+#include "pipeline/sampling/batch_counts.h"
+#include "pipeline/sampling/estimate.h"
 #include "pipeline/sampling/sample_plan.h"
 
 namespace glint::pipeline {
-
-// Names what a batch counts.
-enum class BatchCount : uint8_t {
-  Cycles,
-  Instructions,
-  Nodes,
-  L1Reads,
-  L1Hits,
-  L2Reads,
-  L2Hits,
-  DramClocks,
-  DramBusy,
-  Count
-};
-using BatchCounts = std::array<double, size_t(BatchCount::Count)>;
-inline double at(const BatchCounts& counts, BatchCount which) {
-  return counts[size_t(which)];
-}
 
 // Holds what the machine has counted between the starts of two segments, when it was full.
 struct SampleBatch {
@@ -49,12 +29,6 @@ struct SampleCounts {
   BatchCounts total{};  // of the sample, from its launch to its end
 };
 
-struct Estimate {
-  std::string_view name, unit, doc;
-  double value = 0;
-  double low = 0, high = 0;  // a 95 % interval
-};
-
 // Estimates cycles, IPC, hit rates and the use of DRAM.
 //
 // Cycles are those of the sample and, for the work that it lacks, the batches' cycles for each node visited,
@@ -64,17 +38,5 @@ struct Estimate {
 // Student's quantile for their number, and the method's own error (docs/sampling.md), since a sample's caches
 // and order are not those of the whole launch.
 std::vector<Estimate> estimate(const SampleCounts& counts);
-
-// Holds estimates as statistics: NAME, NAME_low and NAME_high.
-class SampleStats : public stats::Group {
- public:
-  SampleStats(stats::Group* parent, std::vector<Estimate> estimates);
-  const std::vector<Estimate>& estimates() const { return estimates_; }
-
- private:
-  const std::vector<Estimate> estimates_;
-  std::vector<std::string> names_, texts_;  // the statistics refer to them
-  std::vector<std::unique_ptr<stats::Value>> values_;
-};
 
 }  // namespace glint::pipeline

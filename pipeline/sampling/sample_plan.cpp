@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/diagnostics.h"
+#include "base/split_mix.h"
 
 namespace glint::pipeline {
 namespace {
@@ -18,25 +19,9 @@ constexpr uint32_t kLeastSegments = 10;
 constexpr uint32_t kLeastWaves = 3;  // the first wave starts cold, and what follows it is the steady state
 constexpr uint32_t kLeadStep = 2, kRestStep = 8;
 
-// Is SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every host.
-class Numbers {
- public:
-  explicit Numbers(uint64_t seed) : state_(seed) {}
-  // Returns a number below `bound`, which is not 0.
-  uint32_t below(uint32_t bound) {
-    uint64_t z = state_ += 0x9e37'79b9'7f4a'7c15ull;
-    z = (z ^ (z >> 30)) * 0xbf58'476d'1ce4'e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d0'49bb'1331'11ebull;
-    return uint32_t(((z ^ (z >> 31)) >> 32) * bound >> 32);
-  }
-
- private:
-  uint64_t state_;
-};
-
 // Adds blocks [begin, end) to a stratum, of which one in each `step` is executed.
 void add_every(SamplePlan& plan, Stratum stratum, uint32_t begin, uint32_t end, uint32_t step,
-               Numbers& numbers) {
+               SplitMix& numbers) {
   plan.sizes[size_t(stratum)] += end - begin;
   for (uint32_t first = begin; first < end; first += step)
     if (const uint32_t block = first + numbers.below(step); block < end)
@@ -44,7 +29,7 @@ void add_every(SamplePlan& plan, Stratum stratum, uint32_t begin, uint32_t end, 
 }
 
 // Adds a segment: of each `scale` blocks one is timed.
-void add_segment(SamplePlan& plan, uint32_t begin, uint32_t length, Numbers& numbers) {
+void add_segment(SamplePlan& plan, uint32_t begin, uint32_t length, SplitMix& numbers) {
   plan.starts.push_back(uint32_t(plan.timed.size()));
   plan.sizes[size_t(Stratum::Inside)] += length * (plan.scale - 1);
   for (uint32_t first = begin; first < begin + length * plan.scale; first += plan.scale) {
@@ -86,7 +71,7 @@ SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32
                  segments = num_timed / length, span = length * scale;
   SamplePlan plan;
   plan.num_blocks = num_blocks, plan.scale = scale;
-  Numbers numbers(options.seed);
+  SplitMix numbers(options.seed);
   uint32_t done = 0;  // blocks before this one have a place
   for (uint32_t s = 0; s < segments; ++s) {
     const auto first = uint32_t(uint64_t{num_blocks} * s / segments),

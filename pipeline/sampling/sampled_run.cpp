@@ -20,36 +20,6 @@
 namespace glint::pipeline {
 namespace {
 
-template <class Reason>
-double all_of(const stats::Breakdown<Reason>& breakdown) {
-  return double(breakdown.total());
-}
-
-// Returns what the machine has counted up to now.
-BatchCounts counts_of(const TimingMachine& machine, Cycle now) {
-  BatchCounts out{};
-  const auto add = [&](BatchCount which, double count) { out[size_t(which)] += count; };
-  add(BatchCount::Cycles, double(now));
-  for (uint32_t i = 0; i < machine.num_cores(); ++i) {
-    add(BatchCount::Instructions, double(machine.core(i).stats().instructions.value()));
-    add(BatchCount::Nodes, double(machine.rt_unit(i).stats().nodes.value()));
-    const mem::CacheStats& l1 = machine.memory().l1(i).stats();
-    add(BatchCount::L1Reads, all_of(l1.reads));
-    add(BatchCount::L1Hits, all_of(l1.hits));
-  }
-  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) {
-    const mem::Partition& partition = machine.memory().partition(i);
-    for (uint32_t slice = 0; slice < partition.num_slices(); ++slice) {
-      add(BatchCount::L2Reads, all_of(partition.slice(slice).stats().reads));
-      add(BatchCount::L2Hits, all_of(partition.slice(slice).stats().hits));
-    }
-    const mem::DramStats& dram = partition.dram().stats();
-    add(BatchCount::DramClocks, double(dram.clocks.value()));
-    add(BatchCount::DramBusy, double(dram.busy_clocks.value()));
-  }
-  return out;
-}
-
 // Runs the untimed blocks before the timed ones behind them start, and closes a batch where a segment begins.
 class Sampler final : public LaunchPart {
  public:
@@ -169,13 +139,9 @@ SampledRun render_sampled(RenderJob& job, const SampleOptions& options) {
 }
 
 std::string batches_csv(const SampledRun& run) {
-  std::string out =
-      "started,cycles,instructions,nodes,l1_reads,l1_hits,l2_reads,l2_hits,dram_clocks,dram_busy\n";
-  for (const SampleBatch& batch : run.batches) {
-    out += fmt::format("{}", batch.started);
-    for (const double count : batch.counts) out += fmt::format(",{}", count);
-    out += "\n";
-  }
+  std::string out = "started," + batch_columns() + "\n";
+  for (const SampleBatch& batch : run.batches)
+    out += fmt::format("{}{}\n", batch.started, batch_cells(batch.counts));
   return out;
 }
 

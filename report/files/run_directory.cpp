@@ -32,9 +32,9 @@ nlohmann::ordered_json::json_pointer pointer_of(std::string key) {
   return nlohmann::ordered_json::json_pointer("/" + key);
 }
 
-constexpr const char* kResults[] = {"image.png",     "image.pfm",      "image.exr",   "printf.txt",
-                                    "profile.csv",   "profile.folded", "source.json", "series.csv",
-                                    "trace.json.gz", "sample.csv"};
+constexpr const char* kResults[] = {"image.png",     "image.pfm",      "image.exr",     "printf.txt",
+                                    "profile.csv",   "profile.folded", "source.json",   "series.csv",
+                                    "trace.json.gz", "sample.csv",     "signatures.csv"};
 constexpr const char* kFolder = "heat";  // the only folder of a run
 constexpr const char* kUnfinished = "the run has not ended: it still runs, or it was killed";
 
@@ -106,8 +106,14 @@ std::vector<std::string> maps_before(const std::string& path) {
 }
 
 nlohmann::ordered_json json_of(const SampleInfo& sample) {
-  return {{"share", sample.share},   {"seed", sample.seed},          {"scale", sample.scale},
-          {"blocks", sample.blocks}, {"timed", sample.timed_blocks}, {"warm", sample.warm_blocks}};
+  if (sample.of == SampleInfo::Of::Launches)
+    return {{"share", sample.share},
+            {"seed", sample.seed},
+            {"launches", sample.all},
+            {"timed", sample.timed},
+            {"clusters", sample.clusters}};
+  return {{"share", sample.share}, {"seed", sample.seed},   {"scale", sample.scale},
+          {"blocks", sample.all},  {"timed", sample.timed}, {"warm", sample.warm}};
 }
 
 nlohmann::ordered_json json_of(const SequenceInfo& sequence) {

@@ -43,12 +43,16 @@ struct PartInfo {
   std::string where;  // the line and loops where most running warps were; empty when none ran
 };
 
-// Says that only a sample of the launch's blocks was run (docs/sampling.md).
+// Says that only a sample of a launch's blocks, or of a run's launches, was timed (docs/sampling.md).
 struct SampleInfo {
-  double share = 0;  // of the blocks that were timed, as it was asked for
+  enum class Of : uint8_t { Blocks, Launches };
+  double share = 0;  // of the blocks that were timed, as it was asked for, or of the launches
   uint64_t seed = 0;
-  uint32_t scale = 1;                                      // 1/scale of the machine ran them
-  uint64_t blocks = 0, timed_blocks = 0, warm_blocks = 0;  // of the launch, timed, and run functionally
+  Of of = Of::Blocks;
+  uint64_t all = 0, timed = 0;  // blocks of the launch, or launches of the run
+  uint32_t scale = 1;           // 1/scale of the machine ran the blocks
+  uint64_t warm = 0;            // blocks that ran functionally
+  uint64_t clusters = 0;        // of launches
 };
 
 // Names a file that holds an image or a buffer of a pipeline, or a buffer of a kernel.

@@ -19,18 +19,24 @@ struct SampleChange {
 // Returns whether a run is sampled.
 bool is_sampled(const RunRecord& run);
 
-// Returns the changes of the estimates that both sampled runs have. Runs with equal shares, seeds and parts
-// of the machine have timed the same blocks: the scatter of the differences between equal batches is smaller
-// than that of the batches, and the method's own error, which both runs share, is left out. Otherwise the
-// intervals of both runs are combined. `csv_before` and `csv_after` are their files sample.csv. Throws
-// UserError when one of these is none.
-std::vector<SampleChange> sample_changes(const RunRecord& before, const RunRecord& after,
-                                         const std::string& csv_before, const std::string& csv_after);
+// Holds how the estimates of two sampled runs differ.
+struct SampleComparison {
+  std::vector<SampleChange> changes;
+  bool is_paired = false;    // They have timed the same blocks, or the same launches.
+  bool of_launches = false;  // Launches were sampled, not the blocks of one.
+};
 
-// Returns whether the runs have timed the same blocks.
-bool is_paired(const RunRecord& before, const RunRecord& after);
+// Returns the changes of the estimates that both sampled runs have. Where they have timed the same, the
+// scatter of the differences between equal batches or launches is smaller than that of these, and the
+// method's own error, which both runs share, is left out. Otherwise the intervals of both runs are combined.
+// `csv_before` and `csv_after` are their files sample.csv. Throws UserError when one of these is none.
+SampleComparison compare_samples(const RunRecord& before, const RunRecord& after,
+                                 const std::string& csv_before, const std::string& csv_after);
+
+// Returns a sentence that says how the runs were compared.
+std::string how_compared(const SampleComparison& comparison);
 
 // Returns a line for each change, and how they were compared.
-std::string sample_changes_text(const std::vector<SampleChange>& changes, bool paired);
+std::string comparison_text(const SampleComparison& comparison);
 
 }  // namespace glint::report

@@ -122,9 +122,7 @@ std::string estimates(const SampleSummary& s) {
     rows.push_back({row.name, quantity(row.value, row.unit),
                     fmt::format("{} to {}", quantity(row.low, row.unit), quantity(row.high, row.unit)),
                     row.unit == "fraction" ? "" : row.unit});
-  return fmt::format(" a sample of {:g} %, seed {}: {} of {} blocks were timed on 1/{} of the machine\n",
-                     100 * s.share, s.seed, with_thousands(s.timed), with_thousands(s.blocks), s.scale) +
-         table(rows, "<><<", " ");
+  return " " + s.about + "\n" + table(rows, "<><<", " ");
 }
 
 // Returns the sections about what a launch did.
@@ -142,7 +140,7 @@ std::string counts(const Summary& s, const Terminal& terminal) {
 std::string format_summary(const Summary& s, const Terminal& terminal) {
   std::string out = heading(s.title, terminal) + "\n";
   if (!s.note.empty()) out += " " + s.note + "\n";
-  out += s.sample ? "\n" + heading("Estimates of the whole launch", terminal) + "\n" + estimates(*s.sample)
+  out += s.sample ? "\n" + heading("Estimates of the whole run", terminal) + "\n" + estimates(*s.sample)
                   : counts(s, terminal);
   out += "\n" + heading("Simulation", terminal) + "\n" + speed(s);
   for (const std::string& file : s.files) out += " " + file + "\n";

@@ -39,12 +39,9 @@ struct TimingSummary {
   std::optional<double> rt_efficiency;     // active rays / lanes of resident warps
 };
 
-// Holds what a sampled run estimates of its whole launch.
+// Holds what a sampled run estimates of the whole one.
 struct SampleSummary {
-  double share = 0;
-  uint64_t seed = 0;
-  uint32_t scale = 1;              // 1/scale of the machine ran the sample
-  uint64_t timed = 0, blocks = 0;  // blocks that were timed, and of the launch
+  std::string about;  // what was sampled, without an end of line
   struct Row {
     std::string name, unit;
     double value = 0, low = 0, high = 0;  // with a 95 % interval

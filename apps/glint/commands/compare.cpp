@@ -37,8 +37,7 @@ std::string samples_text(const report::RunRecord& was, const report::RunRecord& 
   const auto batches_of = [](const std::string& directory) {
     return report::ListedFiles::of_run(directory).need("sample.csv");
   };
-  return report::sample_changes_text(report::sample_changes(was, is, batches_of(before), batches_of(after)),
-                                     report::is_paired(was, is));
+  return report::comparison_text(report::compare_samples(was, is, batches_of(before), batches_of(after)));
 }
 
 // Compares two runs. `name` is the workload's of a bench, or "".

@@ -44,16 +44,17 @@ void check_scene_options(const RunOptions& options) {
                                         : "what a pipeline, a kernel or a script renders stands in its file");
 }
 
-// Refuses to sample what is not a scene.
+// Refuses to sample the pixels of what is not a frame, and the launches of what does not launch several.
 void check_sampled(const RunOptions& options) {
   check_sample(options.launch);
+  const SampleChoice& sample = options.launch.sample;
   const std::string& what = options.scene.scene;
-  if (options.launch.sample.wanted() && options.scene.sequence.is_wanted())
-    throw UserError({}, "--sample-pixels cannot be used with --frames",
-                    "sample one frame, or run the sequence whole");
-  if (options.launch.sample.wanted() && !is_scene(what))
+  if (sample.wants_pixels() && !is_scene(what))
     throw UserError({}, fmt::format("--sample-pixels belongs to scenes, and '{}' is none", what),
-                    "leave it away to run the whole launch");
+                    "leave it away to run the whole launch; --sample-launches samples several launches");
+  if (sample.wants_launches() && (names_script(what) || names_capsule(what)))
+    throw UserError({}, fmt::format("--sample-launches cannot be used with '{}'", what),
+                    "it samples compute programs, lists of launches and --frames");
 }
 
 Exit run(const Session& session, const RunOptions& options) {

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/launch_sample.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pictures/apng.h"
 #include "pictures/exr.h"
@@ -63,20 +67,20 @@ class FrameRun {
       : options_(options), job_(job), directory_(directory), info_(info), device_(job.gpu) {}
 
   pipeline::RenderResult run(const pipeline::LaunchWatch& watch) {
-    job_.watch = watch;
-    job_.watch.is_bounded = options_.shader_dir.empty();  // Their loops count to numbers of rays.
+    watch_with(watch);
     std::optional<pipeline::RenderResult> sum;
     const report::SequenceInfo& sequence = *info_.sequence;
     for (uint64_t frame = sequence.first; frame <= sequence.last; ++frame) {
-      pipeline::RenderResult result = render(frame);
-      if (!sum)
-        sum.emplace(std::move(result));
-      else
-        sum->add(result);
+      add_result(render(frame), sum);
       if (sum->end != pipeline::LaunchEnd::Whole) break;
     }
     return std::move(*sum);
   }
+
+  // Times a sample of the frames and renders the others functionally. Only those that were timed have run
+  // directories, are in the sum and stay in `info`. All frames leave their pictures.
+  pipeline::RenderResult run_sample(const pipeline::LaunchWatch& watch, LaunchSample& sample,
+                                    report::RunInfo& info);
 
   // Writes the files of the sequence. Returns lines for the summary.
   std::vector<std::string> keep() {
@@ -86,7 +90,9 @@ class FrameRun {
     const bool is_whole = fps == std::floor(fps);
     const pictures::FrameTime time{uint16_t(is_whole ? 1 : std::min(std::round(1000 / fps), 65535.0)),
                                    uint16_t(is_whole ? fps : 1000)};
-    directory_.write(kAnimation, pictures::apng_bytes(pngs_, time));
+    std::vector<std::string> pngs;
+    for (auto& [frame, png] : pngs_) pngs.push_back(std::move(png));
+    directory_.write(kAnimation, pictures::apng_bytes(pngs, time));
     directory_.write(kTable, table_);
     lines.push_back("animation  " + directory_.path_of(kAnimation));
     lines.push_back("table      " + directory_.path_of(kTable));
@@ -94,6 +100,11 @@ class FrameRun {
   }
 
  private:
+  void watch_with(const pipeline::LaunchWatch& watch) {
+    job_.watch = watch;
+    job_.watch.is_bounded = options_.shader_dir.empty();  // Their loops count to numbers of rays.
+  }
+
   // Brings the scene, and what the device sees of it, to a frame.
   pipeline::StructureWork prepare(uint64_t frame) {
     job_.scene.motion->pose(job_.scene, info_.sequence->seconds_of(frame));
@@ -102,10 +113,13 @@ class FrameRun {
       throw UserError({options_.sequence.camera_path}, fmt::format("in frame {} {}", frame, why));
     if (world_) return world_->advance(job_);
     world_ = std::make_unique<pipeline::SceneWorld>(job_);
+    world_->world.on_fault = job_.on_fault;
     return world_->first_work(job_);
   }
 
-  pipeline::RenderResult render(uint64_t frame) {
+  // Calls `launch` with a world that is at the frame, and leaves the run directory of the frame.
+  using Launch = std::function<pipeline::RenderResult()>;
+  pipeline::RenderResult render(uint64_t frame, const Launch& run) {
     const pipeline::StructureWork work = prepare(frame);
     for (const std::string& note : work.notes) fmt::print(stderr, "warning: frame {}: {}\n", frame, note);
     report::RunDirectory directory(directory_.path_of(report::frame_folder(frame)));
@@ -113,9 +127,7 @@ class FrameRun {
     const std::string title = fmt::format("{}, frame {}", info.scene, frame);
     setup::begin_directory(directory, info, job_.gpu, title);
     const auto launch = [&] {
-      pipeline::RenderResult result = pipeline::launch_scene(
-          device_, *world_, job_,
-          info.sequence->caches == "warm" ? pipeline::Caches::Warm : pipeline::Caches::Cold);
+      pipeline::RenderResult result = run();
       pipeline::add_structure_stats(result, work);
       return result;
     };
@@ -123,6 +135,14 @@ class FrameRun {
     pipeline::RenderResult result = record_launch(directory, info, launch, keep_frame, job_.prints);
     note(frame, work, result, directory);
     return result;
+  }
+  pipeline::RenderResult render(uint64_t frame) {
+    return render(frame, [&] { return pipeline::launch_scene(device_, *world_, job_, caches()); });
+  }
+  pipeline::RenderResult survey(uint64_t frame, LaunchSample& sample);
+
+  pipeline::Caches caches() const {
+    return info_.sequence->caches == "warm" ? pipeline::Caches::Warm : pipeline::Caches::Cold;
   }
 
   report::RunInfo info_of(uint64_t frame) const {
@@ -137,14 +157,18 @@ class FrameRun {
   void keep(const report::RunDirectory& directory, const pipeline::RenderResult& result,
             report::RunInfo& info) {
     const pictures::ImageView image{result.width, result.height, result.rgba};
-    pngs_.push_back(pictures::png_bytes(image));
-    directory.write("image.png", pngs_.back());
+    keep_picture(info.moment->frame, image);
+    directory.write("image.png", pngs_.at(info.moment->frame));
     directory.write("image.pfm", pictures::pfm_bytes(image));
     if (options_.exr) directory.write("image.exr", pictures::exr_bytes(image));
-    directory_.write(picture_of(info.moment->frame), pngs_.back());
     note_not_finite("image.pfm", image, result.picture, result, info);
     directory.write_stats(result.statistics(), info.compact);
     write_observation(job_.observe, result, directory);
+  }
+
+  void keep_picture(uint64_t frame, const pictures::ImageView& image) {
+    std::string& png = pngs_[frame] = pictures::png_bytes(image);
+    directory_.write(picture_of(frame), png);
   }
 
   // Adds a frame to the table and to the summary.
@@ -154,7 +178,7 @@ class FrameRun {
                           result.cycles, result.warp_instructions, result.rays.rays, result.rays.nodes,
                           work.bottom.built, work.bottom.refitted, work.top.built, work.top.refitted,
                           work.expected_visits, work.expected_visits_rebuilt);
-    const uint64_t number = frame - info_.sequence->first;
+    const uint64_t number = num_noted_++;
     if (number < kLinesShown)
       lines_.push_back(fmt::format("frame {:<4} {}, {}", frame,
                                    job_.timing
@@ -170,11 +194,61 @@ class FrameRun {
   const report::RunInfo& info_;
   pipeline::Device device_;
   std::unique_ptr<pipeline::SceneWorld> world_;
-  std::vector<std::string> pngs_, lines_;
+  uint64_t num_noted_ = 0;
+  std::map<uint64_t, std::string> pngs_;  // by frame
+  std::vector<std::string> lines_;
   std::string table_ =
       "frame,seconds,cycles,warp_instructions,rays,nodes,bottom_levels_built,bottom_levels_refitted,"
       "top_levels_built,top_levels_refitted,expected_visits,expected_visits_rebuilt\n";
 };
+
+pipeline::RenderResult FrameRun::survey(uint64_t frame, LaunchSample& sample) {
+  prepare(frame);
+  pipeline::RenderResult result = sample.survey("frame", world_->world, caches(), job_.watch);
+  pipeline::read_frame(*world_, job_, result);
+  keep_picture(frame, {result.width, result.height, result.rgba});
+  return result;
+}
+
+pipeline::RenderResult FrameRun::run_sample(const pipeline::LaunchWatch& watch, LaunchSample& sample,
+                                            report::RunInfo& info) {
+  watch_with(watch);
+  const report::SequenceInfo& sequence = *info_.sequence;
+  std::optional<pipeline::RenderResult> surveyed, sum;
+  for (uint64_t frame = sequence.first; frame <= sequence.last; ++frame) {
+    add_result(survey(frame, sample), surveyed);
+    if (surveyed->end == pipeline::LaunchEnd::Whole) continue;
+    info.frames.clear();
+    return std::move(*surveyed);
+  }
+  sample.choose();
+  sample.keep_timed(info.frames);
+  world_.reset();         // The second pass begins with new structures, as the first one did,
+  job_.prints = nullptr;  // and prints nothing again.
+  for (size_t i = 0; !sample.is_complete(); ++i) {
+    const uint64_t frame = sequence.first + i;
+    pipeline::RenderResult result;
+    const auto time = [&] {
+      pipeline::RenderResult timed = sample.time(i, world_->world, caches(), job_.watch);
+      pipeline::read_frame(*world_, job_, timed);
+      return timed;
+    };
+    if (sample.is_timed(i)) {
+      result = render(frame, time);
+    } else {
+      prepare(frame);
+      // A frame needs nothing of another one but what it finds in the L2. Model: of frames that are not
+      // timed, the last one before a timed one fills it.
+      if (sample.is_timed(i + 1) && caches() == pipeline::Caches::Warm)
+        result = sample.warm(world_->world, caches(), job_.watch);
+    }
+    if (result.end != pipeline::LaunchEnd::Whole) return ended_early(std::move(*surveyed), result);
+    if (sample.is_timed(i)) add_result(std::move(result), sum);
+  }
+  sample.finish(*sum);
+  sum->structures = surveyed->structures;
+  return std::move(*sum);
+}
 
 // Adds to `info` the frames and the files of a sequence.
 void describe_sequence(const report::SequenceInfo& sequence, report::RunInfo& info) {
@@ -212,17 +286,23 @@ Exit run_frames(const Session& session, const SceneOptions& options, const Launc
   setup::begin_directory(directory, info, job.gpu, title);
   FrameRun frames(options, job, directory, info);
   std::vector<std::string> files;
+  std::optional<LaunchSample> sample;
+  if (launch.sample.wants_launches()) sample.emplace(launch, job.gpu, job.no_skip, job.threads);
   const pipeline::RenderResult sum = run_recorded(
       session, launch.max_cycles, directory, info,
-      [&](const pipeline::LaunchWatch& watch) { return frames.run(watch); },
+      [&](const pipeline::LaunchWatch& watch) {
+        return sample ? frames.run_sample(watch, *sample, info) : frames.run(watch);
+      },
       [&](const pipeline::RenderResult& ended) {
         info.structures = structure_info(ended.structures);
         directory.write_stats(ended.statistics(), info.compact);
         files = frames.keep();
+        if (sample) sample->keep(directory, info);
         files.push_back("statistics " + directory.path_of(launch.compact() ? "stats.csv" : "stats.txt"));
       });
   for (const std::string& warning : sum.warnings) fmt::print(stderr, "{}\n", warning);
-  return print_result(session, launch.json, job, sum, info, title, std::move(files));
+  return print_result(session, launch.json, job, sum, info, title, std::move(files),
+                      sample ? std::span(sample->estimates()) : std::span<const pipeline::Estimate>());
 }
 
 }  // namespace glint::app

@@ -56,7 +56,7 @@ pipeline::KernelWorld& Kernels::world_of(const KernelLaunch& launch) {
   return *worlds_.at({launch.kernel, launch.entry, launch.contract});
 }
 
-const exec::World& Kernels::prepare(size_t launch) {
+exec::World& Kernels::prepare(size_t launch) {
   const KernelLaunch& from = file_.launches[launch];
   pipeline::KernelWorld& kernel = world_of(from);
   const std::vector<frontend::KernelParameter>& parameters = kernel.kernel().parameters;

@@ -24,7 +24,7 @@ class Kernels {
 
   // Returns the world of a launch with its grid and arguments. It is overwritten by the next launch of the
   // same kernel.
-  const exec::World& prepare(size_t launch);
+  exec::World& prepare(size_t launch);
   // Returns the name of a launch's kernel.
   const std::string& name(size_t launch) { return world_of(file_.launches[launch]).kernel().program.name; }
   // Returns the PTX of all kernels, one after another.

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <fmt/format.h>
+#include <optional>
 #include <utility>
 
 #include "apps/glint/options/observe_options.h"
+#include "apps/glint/run/launch_sample.h"
 #include "apps/glint/run/recorded_run.h"
 #include "pipeline/device.h"
 #include "setup/recorded_launch.h"
@@ -54,19 +57,112 @@ void LaunchRecorder::record(const std::string& name, const std::string& shader, 
     sum_.add(result);
 }
 
-pipeline::RenderResult run_launches(const LaunchList& list, const report::RunInfo& info,
-                                    const pipeline::LaunchWatch& watch, std::vector<std::string>& lines) {
+namespace {
+
+// Keeps the bytes of a simulated memory, so that launches can run from them again.
+class MemoryImage {
+ public:
+  explicit MemoryImage(mem::AddressSpace& memory) {
+    for (const mem::AddressSpace::Slot& slot : memory.slots())
+      if (slot.data)
+        parts_.emplace_back(slot.data, std::vector<std::byte>(slot.data, slot.data + slot.bytes));
+  }
+  void restore() const {
+    for (const auto& [to, bytes] : parts_) std::ranges::copy(bytes, to);
+  }
+
+ private:
+  std::vector<std::pair<std::byte*, std::vector<std::byte>>> parts_;
+};
+
+pipeline::Caches caches_of(const ListedLaunch& launch) {
+  return launch.warm ? pipeline::Caches::Warm : pipeline::Caches::Cold;
+}
+
+// Runs all launches functionally. Returns their sum.
+pipeline::RenderResult survey(const LaunchList& list, const pipeline::LaunchWatch& watch,
+                              LaunchSample& sample) {
+  std::optional<pipeline::RenderResult> sum;
+  for (const ListedLaunch& launch : list.launches) {
+    const exec::World& world = launch.prepare();
+    add_result(sample.survey(launch.shader, world, caches_of(launch), watch), sum);
+    if (sum->end != pipeline::LaunchEnd::Whole) break;
+  }
+  return std::move(*sum);
+}
+
+// Times the chosen launches, each in a directory of its own, and runs those before them functionally. Returns
+// the sum of the timed ones, or `surveyed`, when a launch was ended early.
+pipeline::RenderResult time_chosen(const LaunchList& list, report::RunInfo& info,
+                                   const pipeline::LaunchWatch& watch, pipeline::RenderResult&& surveyed,
+                                   LaunchSample& sample, ListResults& results) {
+  LaunchRecorder recorder(list.options, list.job.gpu, list.directory, info);
+  for (size_t i = 0; !sample.is_complete(); ++i) {
+    const ListedLaunch& launch = list.launches[i];
+    exec::World& world = launch.prepare();
+    world.prints = nullptr;  // The first pass has printed.
+    pipeline::RenderResult warmed;
+    if (sample.is_timed(i))
+      recorder.record(launch.name, launch.shader, world,
+                      [&] { return sample.time(i, world, caches_of(launch), watch); });
+    else
+      warmed = sample.warm(world, caches_of(launch), watch);
+    const pipeline::RenderResult& last = sample.is_timed(i) ? recorder.sum() : warmed;
+    results.lines = recorder.lines();
+    if (last.end == pipeline::LaunchEnd::Whole) continue;
+    info.launches.resize(recorder.num_begun());
+    return ended_early(std::move(surveyed), last);
+  }
+  sample.finish(recorder.sum());
+  return std::move(recorder.sum());
+}
+
+pipeline::RenderResult run_sampled(const LaunchList& list, report::RunInfo& info,
+                                   const pipeline::LaunchWatch& watch, ListResults& results) {
+  LaunchSample sample(list.options, list.job.gpu, list.job.no_skip, list.options.threads);
+  mem::AddressSpace& memory = *list.launches[0].prepare().memory;
+  const MemoryImage before(memory);
+  pipeline::RenderResult surveyed = survey(list, watch, sample);
+  if (surveyed.end != pipeline::LaunchEnd::Whole) {
+    info.launches.clear();
+    return surveyed;
+  }
+  sample.choose();
+  sample.keep_timed(info.launches);
+  const MemoryImage after(memory);
+  before.restore();
+  pipeline::RenderResult sum = time_chosen(list, info, watch, std::move(surveyed), sample, results);
+  after.restore();  // What the run saves is what all launches have left.
+  sample.keep(list.directory, info);
+  results.estimates = sample.estimates();
+  return sum;
+}
+
+}  // namespace
+
+void check_listed(const SampleChoice& choice, bool is_list, bool timing, const std::string& what) {
+  if (choice.wants_launches() && !is_list)
+    throw UserError({}, fmt::format("--sample-launches cannot be used with '{}', which has one launch", what),
+                    "it samples compute programs, lists of launches and --frames");
+  if (choice.wants_launches() && !timing)
+    throw UserError({what},
+                    "--sample-launches needs the timing machine, and the file says mode = \"functional\"",
+                    "--mode timing overrides it");
+}
+
+pipeline::RenderResult run_launches(const LaunchList& list, report::RunInfo& info,
+                                    const pipeline::LaunchWatch& watch, ListResults& results) {
+  if (list.options.sample.wants_launches()) return run_sampled(list, info, watch, results);
   pipeline::Device device(list.job.gpu);
   LaunchRecorder recorder(list.options, list.job.gpu, list.directory, info);
   for (const ListedLaunch& launch : list.launches) {
     const exec::World& world = launch.prepare();
     const pipeline::LaunchMode mode{list.job.timing, list.job.no_skip, list.options.threads,
-                                    launch.warm ? pipeline::Caches::Warm : pipeline::Caches::Cold,
-                                    list.options.observe};
+                                    caches_of(launch), list.options.observe};
     recorder.record(launch.name, launch.shader, world, [&] { return device.run(world, mode, watch); });
     if (recorder.sum().end != pipeline::LaunchEnd::Whole) break;
   }
-  lines = recorder.lines();
+  results.lines = recorder.lines();
   return std::move(recorder.sum());
 }
 

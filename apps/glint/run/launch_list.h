@@ -9,6 +9,7 @@
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/render.h"
+#include "pipeline/sampling/estimate.h"
 #include "report/files/run_directory.h"
 
 namespace glint::app {
@@ -48,7 +49,8 @@ class LaunchRecorder {
 struct ListedLaunch {
   std::string name, shader;
   bool warm = false;  // It begins with what the launch before it left in the caches.
-  std::function<const exec::World&()> prepare;  // is called when those before it have run
+  // Is called when those before it have run, once more for each further pass over the list.
+  std::function<exec::World&()> prepare;
 };
 
 struct LaunchList {
@@ -58,10 +60,18 @@ struct LaunchList {
   std::vector<ListedLaunch> launches;
 };
 
+struct ListResults {
+  std::vector<std::string> lines;             // for the summary, about each launch
+  std::vector<pipeline::Estimate> estimates;  // of a sampled run
+};
+
+// Throws UserError when launches are to be sampled and `what` has no list of them, or runs without time.
+void check_listed(const SampleChoice& choice, bool is_list, bool timing, const std::string& what);
+
 // Runs the launches and leaves a run directory of each in that of the run, which `info` describes. Returns
-// their sum. A launch that is ended early is the last one. Throws as run_recorded() does. `lines` gets a line
-// for the summary about each launch.
-pipeline::RenderResult run_launches(const LaunchList& list, const report::RunInfo& info,
-                                    const pipeline::LaunchWatch& watch, std::vector<std::string>& lines);
+// their sum. A launch that is ended early is the last one. Throws as run_recorded() does. When launches are
+// sampled (docs/sampling.md), only those that were timed have directories, are in the sum and stay in `info`.
+pipeline::RenderResult run_launches(const LaunchList& list, report::RunInfo& info,
+                                    const pipeline::LaunchWatch& watch, ListResults& results);
 
 }  // namespace glint::app

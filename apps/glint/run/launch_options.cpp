@@ -89,20 +89,23 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   options.config_given = command.count("--config") > 0;
   options.mode_given = command.count("--mode") > 0;
   options.on_fault = options.on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
+  options.sample.seed_given = command.count("--sample-seed") > 0;
   options.settings = setup::with_oracles(options.oracles, options.settings);
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
 }
 
 void check_sample(const LaunchOptions& options) {
-  if (!options.sample.wanted()) return;
-  const auto refuse = [](const std::string& option, const std::string& why) {
-    throw UserError({}, "--sample-pixels cannot be used with " + option, why);
+  check_sample_options(options.sample);
+  const std::string given = options.sample.given();
+  if (given.empty()) return;
+  const auto refuse = [&](const std::string& option, const std::string& why) {
+    throw UserError({}, given + " cannot be used with " + option, why);
   };
   if (options.mode != "timing")
     refuse("--mode functional", "the functional machine has no cycles, so run the whole launch");
   if (observes(options.observe))
     refuse("--profile, --sample, --heat and --trace",
-           "they show every block of a launch; leave --sample-pixels away to run all of them");
+           "they show every block of a launch; leave " + given + " away to run all of them");
   if (options.max_cycles) refuse("--max-cycles", "an estimate needs the sample's end");
 }
 

@@ -123,16 +123,25 @@ std::string shader_of(const pipeline::LaunchDescription& launch) {
   return launch.raygen->group.empty() ? launch.raygen->inlined.general : launch.raygen->group;
 }
 
-pipeline::RenderResult run_list(LaunchList list, pipeline::PipelineWorld& world, const report::RunInfo& info,
-                                const pipeline::LaunchWatch& watch, std::vector<std::string>& lines) {
+pipeline::RenderResult run_list(LaunchList list, pipeline::PipelineWorld& world, report::RunInfo& info,
+                                const pipeline::LaunchWatch& watch, ListResults& results) {
   const auto& launches = world.description().launches;
   for (size_t i = 0; i < launches.size(); ++i)
     list.launches.push_back({launches[i].name, shader_of(launches[i]), launches[i].warm,
-                             [&world, i]() -> const exec::World& { return world.world(i); }});
-  pipeline::RenderResult sum = run_launches(list, info, watch, lines);
+                             [&world, i]() -> exec::World& { return world.world(i); }});
+  pipeline::RenderResult sum = run_launches(list, info, watch, results);
   sum.structures = world.structures;
   sum.warnings = world.warnings;
   return sum;
+}
+
+// Names the pipeline and says how large it is.
+std::string what_of(const pipeline::PipelineWorld& world, bool is_list) {
+  const pipeline::PipelineDescription& d = world.description();
+  if (is_list) return fmt::format("{}  {} launches", d.name, world.num_launches());
+  const auto& [x, y, z] = world.world().launch_size;
+  return fmt::format("{}  {} x {} x {} {}", d.name, x, y, z,
+                     d.launches[0].compute.empty() ? "rays" : "threads");
 }
 
 }  // namespace
@@ -176,25 +185,23 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   check_observation(options.observe, job.timing);
   check_max_cycles(options.max_cycles, job.timing);
   job.no_skip = options.no_skip;
+  const bool is_list = !description.launches[0].name.empty();
+  check_listed(options.sample, is_list, job.timing, what);
   pipeline::PipelineWorld world(description, job.gpu);
   exec::PrintLog prints(options.print_limit);
   for (size_t i = 0; i < world.num_launches(); ++i)
     world.world(i).prints = &prints, world.world(i).on_fault = options.on_fault;
   for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
 
-  const auto& [x, y, z] = world.world().launch_size;
-  const bool is_list = !description.launches[0].name.empty();
-  const std::string title =
-      is_list ? fmt::format("{}  {} launches, {} on {}", description.name, world.num_launches(), mode, config)
-              : fmt::format("{}  {} x {} x {} {}, {} on {}", description.name, x, y, z,
-                            description.launches[0].compute.empty() ? "rays" : "threads", mode, config);
+  const std::string title = fmt::format("{}, {} on {}", what_of(world, is_list), mode, config);
   report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
                                                      : options.out);
   report::RunInfo info = describe_run(session, world, what, job.gpu, config, mode);
   info.on_fault = exec::name_of(options.on_fault);
   info.compact = options.compact();
   setup::begin_directory(directory, info, job.gpu, title);
-  std::vector<std::string> files, launches;
+  std::vector<std::string> files;
+  ListResults launches;
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
@@ -206,13 +213,13 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
         directory.write_stats(ended.statistics(), options.compact());
         files = keep(world, directory, ended, info);
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
-        files.insert(files.begin(), launches.begin(), launches.end());
+        files.insert(files.begin(), launches.lines.begin(), launches.lines.end());
         if (is_list) return;  // Each launch has kept its own.
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
       },
       &prints);
-  return print_result(session, options.json, job, result, info, title, std::move(files));
+  return print_result(session, options.json, job, result, info, title, std::move(files), launches.estimates);
 }
 
 }  // namespace glint::app

@@ -52,7 +52,7 @@ std::vector<ListedLaunch> listed(const LaunchFile& file, Kernels& kernels) {
   std::vector<ListedLaunch> out;
   for (size_t i = 0; i < file.launches.size(); ++i)
     out.push_back({file.launches[i].name, kernels.name(i), file.launches[i].warm,
-                   [&kernels, i]() -> const exec::World& { return kernels.prepare(i); }});
+                   [&kernels, i]() -> exec::World& { return kernels.prepare(i); }});
   return out;
 }
 
@@ -87,6 +87,7 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   pipeline::RenderJob job;
   job.gpu = gpu_of(session.resources, options);
   job.timing = options.mode == "timing", job.no_skip = options.no_skip;
+  check_listed(options.sample, file.is_list(), job.timing, what);
   Kernels kernels(file, launch_path, job.gpu, options);
   const std::string name =
       file.is_list() ? std::filesystem::path(launch_path).stem().string() : kernels.name(0);
@@ -97,7 +98,8 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   report::RunInfo info = describe_run(session, options, job.gpu, name, kernels, file);
   if (!what.ends_with(".ptx")) info.scene_file = what;
   setup::begin_directory(directory, info, job.gpu, title);
-  std::vector<std::string> files, launches;
+  std::vector<std::string> files;
+  ListResults launches;
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
@@ -108,14 +110,14 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
-        files = std::move(launches);
+        files = std::move(launches.lines);
         for (std::string& line : kernels.keep_buffers(directory)) files.push_back(std::move(line));
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         if (file.is_list()) return;  // Each launch has kept its own.
         for (std::string& line : write_observation(options.observe, ended, directory))
           files.push_back(std::move(line));
       });
-  return print_result(session, options.json, job, result, info, title, std::move(files));
+  return print_result(session, options.json, job, result, info, title, std::move(files), launches.estimates);
 }
 
 }  // namespace glint::app

@@ -84,7 +84,7 @@ void relaunch_program(const Session& session, const report::RunRecord& run, cons
         fmt::format("there is no program '{}' with the input '{}'", run.text("scene.name"), input),
         "another version of Glint made the run: run it again");
   compute::HostSetup setup{gpu, session.resources.shader_dir("compute"), {}, {}, cache};
-  setup.run = [&take](const exec::World& world) { return take(world, true); };
+  setup.run = [&take](const std::string&, const exec::World& world) { return take(world, true); };
   compute::run_program(*program, input == program->small_input ? compute::Size::Small : compute::Size::Full,
                        setup);
 }

@@ -58,8 +58,12 @@ pipeline::SampledRun render_sample(const SampleChoice& choice, report::RunInfo& 
                                    pipeline::RenderJob& job) {
   const pipeline::SampleOptions options = choice.options();
   pipeline::SampledRun run = pipeline::render_sampled(job, options);
-  info.sample = {options.share,       options.seed,          run.plan.scale,
-                 run.plan.num_blocks, run.plan.timed.size(), run.plan.warm.size()};
+  info.sample = report::SampleInfo{.share = options.share,
+                                   .seed = options.seed,
+                                   .all = run.plan.num_blocks,
+                                   .timed = run.plan.timed.size(),
+                                   .scale = run.plan.scale,
+                                   .warm = run.plan.warm.size()};
   return run;
 }
 
@@ -72,9 +76,9 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
   const auto render = [&](const pipeline::LaunchWatch& watch) {
     job.watch = watch;
     job.watch.is_bounded = has_built_in_shaders;  // Their loops count to numbers of rays.
-    if (launch.sample.wanted()) sampled = render_sample(launch.sample, info, job);
+    if (launch.sample.wants_pixels()) sampled = render_sample(launch.sample, info, job);
     pipeline::RenderResult rendered =
-        launch.sample.wanted() ? std::move(sampled.result) : pipeline::render_and_drain(job);
+        launch.sample.wants_pixels() ? std::move(sampled.result) : pipeline::render_and_drain(job);
     info.structures = structure_info(rendered.structures);
     return rendered;
   };
@@ -84,7 +88,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
     if (options.exr) directory.write("image.exr", pictures::exr_bytes(image));
     note_not_finite("image.pfm", image, rendered.picture, rendered, info);
     directory.write_stats(rendered.statistics(), info.compact);
-    if (launch.sample.wanted()) directory.write("sample.csv", pipeline::batches_csv(sampled));
+    if (launch.sample.wants_pixels()) directory.write("sample.csv", pipeline::batches_csv(sampled));
     for (std::string& line : write_observation(job.observe, rendered, directory))
       files.push_back(std::move(line));
   };
@@ -173,8 +177,14 @@ report::RunInfo describe_scene(const Session& session, const SceneOptions& optio
 
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
   check_scene(options);
+  if (options.sequence.is_wanted() && launch.sample.wants_pixels())
+    throw UserError({}, "--sample-pixels cannot be used with --frames",
+                    "sample one frame, or time some of the frames with --sample-launches");
   if (options.sequence.is_wanted()) return run_frames(session, options, launch);
   check_without_frames(options.sequence);
+  if (launch.sample.wants_launches())
+    throw UserError({}, "--sample-launches needs --frames, because a frame is one launch",
+                    "--sample-pixels times a share of one frame");
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
   const std::unique_ptr<pipeline::StructureCache> structures =
       open_structure_cache(launch.shaders, session.plugins);

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/run/summary.h"
 
+#include <fmt/format.h>
 #include <utility>
 
 #include "isa/warp.h"
 #include "memsys/peak.h"
 #include "report/files/stat_rows.h"
+#include "report/terminal/table.h"
 
 namespace glint::app {
 namespace {
@@ -80,7 +82,14 @@ report::Summary summarise(const pipeline::RenderJob& job, const pipeline::Render
 
 void add_sample(const report::SampleInfo& sample, std::span<const pipeline::Estimate> estimates,
                 report::Summary& summary) {
-  report::SampleSummary out{sample.share, sample.seed, sample.scale, sample.timed_blocks, sample.blocks, {}};
+  const std::string timed = report::with_thousands(sample.timed), all = report::with_thousands(sample.all);
+  report::SampleSummary out;
+  out.about =
+      sample.of == report::SampleInfo::Of::Launches
+          ? fmt::format("seed {}: {} of {} launches were timed, of {} clusters", sample.seed, timed, all,
+                        sample.clusters)
+          : fmt::format("a sample of {:g} %, seed {}: {} of {} blocks were timed on 1/{} of the machine",
+                        100 * sample.share, sample.seed, timed, all, sample.scale);
   for (const pipeline::Estimate& one : estimates)
     out.rows.push_back({std::string(one.name), std::string(one.unit), one.value, one.low, one.high});
   summary.sample = std::move(out);

@@ -1,0 +1,119 @@
+// Computes the estimates of a run whose launches were sampled.
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/sampling/launch_estimates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "base/student.h"
+
+namespace glint::pipeline {
+namespace {
+
+// Source: bench/sampling_table.py --launches on `mobile` (docs/sampling.md).
+constexpr MethodError kLaunchError{.cycles = 0.01, .l1 = 0.01, .l2 = 0.02, .utilisation = 0.02};
+
+// Says what of a launch is summed up.
+using Part = std::function<double(const TimedLaunch&)>;
+
+Part part(BatchCount which) {
+  return [which](const TimedLaunch& one) { return at(one.counts, which); };
+}
+
+class LaunchEstimator {
+ public:
+  LaunchEstimator(std::span<const TimedLaunch> timed, const LaunchTotals& totals)
+      : timed_(timed), totals_(totals) {
+    for (const TimedLaunch& one : timed) clusters_[one.cluster].push_back(&one);
+    student_ = student_quantile(uint32_t(timed.size() - clusters_.size()));
+  }
+
+  std::vector<Estimate> all();
+
+ private:
+  // Returns a sum over all launches.
+  Uncertain sum(const Part& of) const;
+  // Returns a quotient of such sums, whose scatter is that of its linear part.
+  Uncertain quotient(BatchCount above, BatchCount below) const;
+  void add(Quantity which, Uncertain value, double error) {
+    out_.push_back(make_estimate(which, value, student_, error));
+  }
+  void add_fraction(Quantity which, BatchCount above, BatchCount below, double error) {
+    if (sum(part(below)).value > 0) add(which, quotient(above, below), error);
+  }
+
+  const std::span<const TimedLaunch> timed_;
+  const LaunchTotals totals_;
+  std::map<uint32_t, std::vector<const TimedLaunch*>> clusters_;
+  double student_ = 0;
+  std::vector<Estimate> out_;
+};
+
+Uncertain LaunchEstimator::sum(const Part& of) const {
+  Uncertain out;
+  for (const auto& [number, cluster] : clusters_) {
+    const auto n = double(cluster.size());
+    double size = 0, mean = 0, squares = 0;
+    for (const TimedLaunch* one : cluster) {
+      size += one->weight, mean += of(*one) / n;
+      out.value += one->weight * of(*one);
+    }
+    for (const TimedLaunch* one : cluster) squares += std::pow(of(*one) - mean, 2);
+    if (n > 1) out.variance += size * (size - n) / n * squares / (n - 1);
+  }
+  return out;
+}
+
+Uncertain LaunchEstimator::quotient(BatchCount above, BatchCount below) const {
+  const double x = sum(part(below)).value, q = sum(part(above)).value / x;
+  return {q, sum([&](const TimedLaunch& one) {
+               return (at(one.counts, above) - q * at(one.counts, below)) / x;
+             }).variance};
+}
+
+std::vector<Estimate> LaunchEstimator::all() {
+  // A run whose launches are all timed has no error.
+  const MethodError error =
+      timed_.size() == size_t(sum([](const TimedLaunch&) { return 1; }).value) ? MethodError{} : kLaunchError;
+  const Uncertain cycles = sum(part(BatchCount::Cycles));
+  const auto with_differences = [&](double all, BatchCount which, double TimedLaunch::*functional) {
+    Uncertain out = sum([&](const TimedLaunch& one) { return at(one.counts, which) - one.*functional; });
+    out.value += all;
+    return out;
+  };
+  const Uncertain instructions = with_differences(totals_.instructions, BatchCount::Instructions,
+                                                  &TimedLaunch::functional_instructions),
+                  nodes = with_differences(totals_.nodes, BatchCount::Nodes, &TimedLaunch::functional_nodes);
+  add(Quantity::Cycles, cycles, error.cycles * cycles.value);
+  const double ipc = instructions.value / cycles.value;
+  add(Quantity::Ipc,
+      {ipc, ipc * ipc *
+                (cycles.variance / std::pow(cycles.value, 2) +
+                 instructions.variance / std::pow(std::max(1.0, instructions.value), 2))},
+      error.cycles * ipc);
+  add(Quantity::Instructions, instructions, 0);
+  if (totals_.nodes > 0) add(Quantity::Nodes, nodes, 0);
+  add_fraction(Quantity::L1HitRate, BatchCount::L1Hits, BatchCount::L1Reads, error.l1);
+  add_fraction(Quantity::L2HitRate, BatchCount::L2Hits, BatchCount::L2Reads, error.l2);
+  add_fraction(Quantity::DramUtilisation, BatchCount::DramBusy, BatchCount::DramClocks, error.utilisation);
+  return std::move(out_);
+}
+
+}  // namespace
+
+std::vector<Estimate> estimate_launches(std::span<const TimedLaunch> timed, const LaunchTotals& totals) {
+  return LaunchEstimator(timed, totals).all();
+}
+
+std::string launches_csv(std::span<const TimedLaunch> timed) {
+  std::string out = "launch,cluster,weight," + batch_columns() + "\n";
+  for (const TimedLaunch& one : timed)
+    out += fmt::format("{},{},{}{}\n", one.launch, one.cluster, one.weight, batch_cells(one.counts));
+  return out;
+}
+
+}  // namespace glint::pipeline
