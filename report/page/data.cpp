@@ -21,6 +21,7 @@
 #include "report/metrics/metrics.h"
 #include "report/page/heat.h"
 #include "report/page/profile.h"
+#include "report/page/samples.h"
 #include "report/page/source.h"
 #include "report/page/stats.h"
 #include "report/page/timeline.h"
@@ -185,8 +186,10 @@ nlohmann::ordered_json page_data(const std::vector<PageRun>& runs, const std::st
                              {"group", group.title},
                              {"paper", metric.paper},
                              {"known", !metric.formula.empty()}});
+  Json sample_changes = page_sample_changes(list);
   return {{"schema", 2},
           {"version", version},
+          {"sample_changes", std::move(sample_changes)},
           {"runs", std::move(list)},
           {"stat_docs", std::move(stat_docs)},
           {"metric_docs", std::move(metric_docs)},

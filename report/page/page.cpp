@@ -16,6 +16,7 @@
 #include "report/page/columns.h"
 #include "report/page/lab.h"
 #include "report/page/parts.h"
+#include "report/page/samples.h"
 #include "report/page/suite.h"
 #include "report/page/tables.h"
 
@@ -188,8 +189,8 @@ std::string section(const char* id, const char* title, const char* lead, const s
 
 // Returns the sections that can be read without script. The script adds its figures.
 std::string static_sections(const Json& data) {
-  std::string out = partial_runs(data["runs"]) + application_sections(data) + collection_sections(data) +
-                    lab_sections(data) + suite_sections(data);
+  std::string out = partial_runs(data["runs"]) + sample_section(data) + application_sections(data) +
+                    collection_sections(data) + lab_sections(data) + suite_sections(data);
   if (data["runs"].empty()) return out;
   return out +
          section("configuration", "Configuration", config_lead(data["runs"]).c_str(),

@@ -49,6 +49,26 @@ class Browser(ReportTest):
         values = [float(value) for value in re.findall(r'data-value="([^"]+)"', drawn)]
         self.assertEqual(values, [number for arm in document["arms"][1:] for number in (arm["here"], arm["published"])])
 
+    def test_a_sampled_run_shows_its_estimates_and_marks_what_counts_the_sample_alone(self):
+        for out, latency in (("sampled", 48), ("changed", 148)):
+            self.runs[out] = str(self.folder / out)
+            done = self.glint("run", "gaussian", "--small", "--sample-launches", "8", "--set", f"memory.noc.request_latency={latency}", "--out", self.runs[out])
+            self.assertEqual(done.returncode, 0, done.stderr)
+        page, text = self.load("sampled")
+        shown = {attributes["data-stat"]: float(attributes["data-value"]) for _, attributes, _ in page.having("data-stat")}
+        self.assertNotIn("gpu.cycles", shown)
+        table = {attributes["data-estimate"]: float(attributes["data-value"]) for _, attributes, _ in page.having("data-estimate")}
+        for name in ("cycles", "ipc", "instructions", "l1_hit_rate", "l2_hit_rate", "dram_utilisation"):
+            self.assertEqual(shown[f"gpu.sample.{name}"], self.total("sampled", f"gpu.sample.{name}"), name)
+            self.assertEqual(table[name], shown[f"gpu.sample.{name}"], name)
+        self.assertIn("8 of 30 launches were timed", text)
+        self.assertLess(text.index('id="estimates"'), text.index('id="stalls"'))
+        self.assertIn("not the whole run", text[text.index('id="stalls"'):])
+        _, text = self.load("sampled", "changed")
+        changes = text[text.index('id="estimates"'):]
+        self.assertIn("Both runs have timed the same launches", changes)
+        self.assertRegex(changes, r'data-change="cycles">\+[^<]*</td>.*?<strong>significant')
+
     def test_one_run_shows_the_numbers_of_stats_json(self):
         page, text = self.load("wknd")
         shown = {attributes["data-stat"]: (attributes["data-value"], words) for _, attributes, words in page.having("data-stat")}

@@ -53,6 +53,14 @@ function section(id, title, lead, ...content) {
   const known = content.flat().filter(Boolean);
   return known.length ? h("section", { id }, h("h2", {}, title), lead ? h("p", { class: "lead" }, lead) : null, known) : null;
 }
+// Sections that show statistics say so where these are those of a sample.
+const kOfWholeRuns = ["overview", "comparison", "structure"];
+function markSampled(runs) {
+  if (!runs.some((run) => run.isSampled)) return;
+  for (const shown of document.querySelectorAll("#figures > section"))
+    if (!kOfWholeRuns.includes(shown.id)) shown.querySelector("h2")?.after(h("p", { class: "note sampled" }, "Of sampled runs this shows what was timed, not the whole run."));
+  document.getElementById("overview").after(document.getElementById("estimates"));
+}
 
 function sectionsOf(data, runs) {
   if (runs.length === 0) return [overviewOfSuites(data)];
@@ -77,6 +85,7 @@ function draw(data) {
   const docs = { ...data.stat_docs, keys: data.key_docs };
   const runs = labelRuns(data.runs.map((run, index) => new Run(run, index, docs)));
   document.getElementById("figures").append(...sectionsOf(data, runs).filter(Boolean));
+  markSampled(runs);
   document.getElementById("all-keys")?.append(keys(runs, data.key_docs)); // A page of suites alone has no place for them.
   document.getElementById("all-metrics")?.append(metrics(runs, data.metric_docs));
   suites(data);

@@ -59,15 +59,27 @@ export class Run {
     return this.data.config[key];
   }
 
+  // Returns {value, low, high} of what a sampled run estimates of the whole one, or null.
+  estimate(name) {
+    const path = `gpu.sample.${name}`;
+    return this.has(path) ? { value: this.sum(path), low: this.sum(`${path}_low`), high: this.sum(`${path}_high`) } : null;
+  }
+  get isSampled() {
+    return Boolean(this.facts.sample);
+  }
+  // Cycles, seconds and IPC are those of the whole run, which a sampled one estimates.
   get cycles() {
-    return this.sum("gpu.cycles");
+    return this.estimate("cycles")?.value ?? this.sum("gpu.cycles");
   }
   get seconds() {
-    return this.cycles / (this.config("clock_mhz") * 1e6);
+    return this.secondsOf(this.cycles);
+  }
+  secondsOf(cycles) {
+    return cycles / (this.config("clock_mhz") * 1e6);
   }
   // Returns warp instructions per cycle of the whole GPU, as the terminal shows them.
   get ipc() {
-    return ratio(this.sum("gpu.core[*].instructions"), this.cycles);
+    return this.estimate("ipc")?.value ?? ratio(this.sum("gpu.core[*].instructions"), this.cycles);
   }
   get workload() {
     const { scene, shader } = this.facts;

@@ -14,7 +14,8 @@ function starts(run, tests, unit) {
 }
 function bandwidth(run, bytes, ...peaks) {
   const known = peaks.map((peak) => run.facts.memory_peaks?.[peak]).filter(Boolean);
-  return known.length && bytes !== null ? bytes / run.seconds / Math.min(...known) : null;
+  if (run.facts.sample?.scale > 1) return null; // A part of the machine ran, and the peaks are those of all of it.
+  return known.length && bytes !== null ? bytes / run.secondsOf(run.sum("gpu.cycles")) / Math.min(...known) : null;
 }
 const fetched = (run) => kSectorBytes * run.part("gpu.memory.core[*].l1.sectors_fetched", () => true);
 
@@ -25,7 +26,7 @@ const kBounds = [
   ["RT unit: triangle tests", "that its triangle units start", (run) => starts(run, run.sum("gpu.rt_unit[*].rt.triangle_tests"), "triangle")],
   ["L1 data", "sectors that cores and RT units ask for, of whole lines a port", (run) => bandwidth(run, kSectorBytes * (run.sum("gpu.core[*].sectors") + run.sum("gpu.rt_unit[*].rt.sectors")), "l1_bytes_per_second")],
   ["L2 to L1", "sectors fetched, of what L2 and network carry", (run) => bandwidth(run, fetched(run), "network_bytes_per_second", "l2_bytes_per_second")],
-  ["DRAM", "clocks with data", (run) => run.metric("dram_util")],
+  ["DRAM", "clocks with data", (run) => run.metric("dram_util") ?? ratio(run.sum("gpu.memory.partition[*].dram.busy_clocks"), run.sum("gpu.memory.partition[*].dram.clocks"))],
 ];
 
 export function bounds(runs) {

@@ -18,6 +18,22 @@ const kNumbers = [
   { name: "DRAM utilisation", value: (run) => run.metric("dram_util"), text: (v) => percent(v), sub: (run) => `of ${short(run.facts.memory_peaks?.dram_bytes_per_second ?? null)}B/s`, stat: "dram_util" },
 ];
 
+// These are the key numbers of sampled runs: estimates of the whole run.
+const kEstimates = [
+  { name: "Cycles", of: "cycles", text: (v) => number(Math.round(v)) },
+  { name: "IPC", of: "ipc", text: (v) => v.toFixed(2) },
+  { name: "Warp instructions", of: "instructions", text: short },
+  { name: "Nodes visited", of: "nodes", text: short },
+  { name: "L1 hits", of: "l1_hit_rate", text: (v) => percent(v) },
+  { name: "L2 hits", of: "l2_hit_rate", text: (v) => percent(v) },
+  { name: "DRAM utilisation", of: "dram_utilisation", text: (v) => percent(v) },
+].map((one) => ({ ...one, stat: `gpu.sample.${one.of}`, value: (run) => run.estimate(one.of)?.value ?? null }));
+
+const intervalOf = (run, { of, text }) => {
+  const found = run.estimate(of);
+  return found.low === found.high ? "exact" : `${text(found.low)} to ${text(found.high)}`;
+};
+
 function hits(run, cache) {
   const all = () => true;
   return ratio(run.part(`gpu.memory.${cache}.hits`, all), run.part(`gpu.memory.${cache}.reads`, all));
@@ -31,7 +47,14 @@ function about(run) {
   return words.filter(Boolean).join(" · ");
 }
 
-const numbersOf = (runs) => kNumbers.filter((one) => !one.rays || runs.some((run) => run.metric("rays_total")));
+// A row of a table has the numbers that all runs have. Where some are sampled, these are the ones that can be estimated.
+function numbersOf(runs) {
+  if (!runs.some((run) => run.isSampled)) return ofWholeRuns(runs);
+  if (runs.every((run) => run.isSampled))
+    return kEstimates.filter((one) => runs.some((run) => one.value(run) !== null)).map((one) => ({ ...one, sub: (run) => (one.value(run) === null ? "" : intervalOf(run, one)) }));
+  return kNumbers.filter(({ name }) => ["Cycles", "IPC"].includes(name)).map((one, i) => ({ ...one, sub: (run) => (run.isSampled ? intervalOf(run, kEstimates[i]) : "") }));
+}
+const ofWholeRuns = (runs) => kNumbers.filter((one) => !one.rays || runs.some((run) => run.metric("rays_total")));
 
 const kPictureWidth = 288; // as in report.css
 
@@ -63,8 +86,8 @@ function changesOf({ overrides, crop }) {
 function single(run) {
   const { facts } = run;
   const picture = pictureOf(run);
-  const numbers = numbersOf([run]).map((one) => h("div", { class: "number" }, h("dt", {}, one.name), h("dd", { "data-stat": one.stat, "data-value": one.value(run) }, one.text(one.value(run))), h("dd", { class: "sub" }, one.sub(run))));
-  const details = [facts.scene.note, changesOf(facts), facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
+  const numbers = numbersOf([run]).map((one) => h("div", { class: "number" }, h("dt", {}, one.name), h("dd", { "data-stat": one.stat, "data-value": one.value(run) }, one.text(one.value(run))), h("dd", { class: "sub" }, run.isSampled ? `95 %: ${one.sub(run)}` : one.sub(run))));
+  const details = [run.isSampled ? "These are estimates of the whole run, with their 95 % intervals." : "", facts.scene.note, changesOf(facts), facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
   return [
     h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, run.workload), h("p", { class: "about" }, about(run))),
     h("div", { class: picture ? "key with-picture" : "key" }, picture, h("dl", { class: "numbers" }, numbers)),
@@ -76,6 +99,7 @@ function single(run) {
 function several(runs) {
   const numbers = numbersOf(runs);
   const values = numbers.map((one) => runs.map((run) => one.value(run)));
+  const sampled = runs.some((run) => run.isSampled); // Intervals stand below the numbers then.
   const best = values.map((column) => Math.max(...column.map((value) => value ?? -Infinity)));
   const row = (run, i) =>
     h(
@@ -83,7 +107,7 @@ function several(runs) {
       {},
       h("td", { class: "thumb" }, thumbOf(run) ? h("img", { src: thumbOf(run), alt: "" }) : null),
       h("th", { scope: "row", title: run.data.directory }, h("span", { class: "dot", style: `background:var(--${runColour(run.index)})` }), run.label, h("small", {}, about(run))),
-      numbers.map((one, k) => h("td", { class: "n", "data-stat": one.stat, "data-value": values[k][i], "data-best": values[k][i] === best[k] }, one.text(values[k][i]))),
+      numbers.map((one, k) => h("td", { class: "n", "data-stat": one.stat, "data-value": values[k][i], "data-best": values[k][i] === best[k] }, values[k][i] === null ? "–" : one.text(values[k][i]), sampled ? h("small", {}, one.sub(run)) : null)),
     );
   return [
     h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, `${runs.length} runs`), h("p", { class: "about" }, [...new Set(runs.map((run) => run.workload))].join(", "))),
