@@ -46,18 +46,29 @@ struct ConstantParams {
   uint32_t line = 64;
   // The CUDA programming guide says that different addresses in a warp are served one after another.
   bool serial = true;
+  uint32_t place_interval = 0, place_latency = 0;
   PolicyChoice<mem::Replacement> replacement{"lru"};  // Choice: unpublished
   static ParamList params() {
-    return {flag(&ConstantParams::perfect, "perfect", "True: constant loads always hit."),
-            param(&ConstantParams::size, "size", "byte", "Size of a core's constant cache (level 1).", 64,
-                  1 << 20),
-            param(&ConstantParams::ways, "ways", "way",
-                  "Number of lines per set. 0: the cache is fully associative.", 0, 4096),
-            policy(&ConstantParams::replacement, "replacement",
-                   "Selects the line of a set that makes way for a new line in the constant cache."),
-            param(&ConstantParams::line, "line", "byte", "Size of a line. It is a power of two.", 32, 128),
-            flag(&ConstantParams::serial, "serial",
-                 "True: a load takes the pipe's interval for each different word that its lanes want.")};
+    return {
+        flag(&ConstantParams::perfect, "perfect", "True: constant loads always hit."),
+        param(&ConstantParams::size, "size", "byte", "Size of a core's constant cache (level 1).", 64,
+              1 << 20),
+        param(&ConstantParams::ways, "ways", "way",
+              "Number of lines per set. 0: the cache is fully associative.", 0, 4096),
+        policy(&ConstantParams::replacement, "replacement",
+               "Selects the line of a set that makes way for a new line in the constant cache."),
+        param(&ConstantParams::line, "line", "byte", "Size of a line. It is a power of two.", 32, 128),
+        flag(&ConstantParams::serial, "serial",
+             "True: a load takes a turn of the pipe for each different address that its lanes want."),
+        param(&ConstantParams::place_interval, "place_interval", "cycle",
+              "Cycles from one turn of a load to its next one, where loads take several turns. 0: it is the "
+              "pipe's interval.",
+              0, 64),
+        param(&ConstantParams::place_latency, "place_latency", "cycle",
+              "Cycles from the result of a load with one turn less to the result of a load with this turn. "
+              "0: it "
+              "is the pipe's interval.",
+              0, 64)};
   }
 };
 

@@ -6,12 +6,12 @@
 
 namespace glint::core {
 
-uint32_t different_words(const isa::Access& access, LaneMask lanes) {
-  std::array<Address, size_t(kLanes)> words;
+uint32_t different_addresses(const isa::Access& access, LaneMask lanes) {
+  std::array<Address, size_t(kLanes)> seen;
   uint32_t count = 0;
   for_each_lane(lanes, [&](int lane) {
-    const Address word = access.address[size_t(lane)] / 4;
-    if (std::find(words.begin(), words.begin() + count, word) == words.begin() + count) words[count++] = word;
+    const Address at = access.address[size_t(lane)];
+    if (std::find(seen.begin(), seen.begin() + count, at) == seen.begin() + count) seen[count++] = at;
   });
   return std::max(count, 1u);
 }

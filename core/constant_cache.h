@@ -10,9 +10,9 @@
 
 namespace glint::core {
 
-// Returns the number of different words at which the lanes of an access begin. Broadcasting one word after
-// another takes this number of turns.
-uint32_t different_words(const isa::Access& access, LaneMask lanes);
+// Returns the number of different addresses at which the lanes of an access begin. Each takes a turn, whether
+// or not it lies in the word of another one. Source: chains of loads on an H100 (docs/validation.md).
+uint32_t different_addresses(const isa::Access& access, LaneMask lanes);
 
 // Serves loads. A load whose lines are all present takes its fixed time; otherwise its warp waits for all of
 // them.

@@ -17,9 +17,12 @@ ConstantPort::ConstantPort(const CoreParts& core, ConstantCache* cache)
 void ConstantPort::start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
   WarpSlot& at = core_.warps[slot];
   const isa::Access& access = at.warp.regs.access;
-  const Cycle turns = is_serial_ ? different_words(access, issued.lanes) : 1;
-  at.scheduler->take(row.pipe, now, turns * row.interval);
-  loads_[slot] = {issued.pc, now, row.latency + (turns - 1) * row.interval / OpTime::kParts};
+  const Cycle more = is_serial_ ? different_addresses(access, issued.lanes) - 1 : 0;
+  const ConstantParams& params = core_.params.constant;
+  const Cycle interval = params.place_interval ? params.place_interval * OpTime::kParts : row.interval;
+  const Cycle latency = params.place_latency ? params.place_latency * OpTime::kParts : row.interval;
+  at.scheduler->take(row.pipe, now, row.interval + more * interval);
+  loads_[slot] = {issued.pc, now, row.latency + more * latency / OpTime::kParts};
   const uint64_t offset = issued.row->memory.space == isa::Space::Param ? isa::kPushConstantOffset : 0;
   if (cache_ && !cache_->look_up(slot, access, issued.lanes, offset, now))
     at.front = {kNever, Stall::Const};

@@ -57,12 +57,17 @@ constexpr OpTime kTimes[] = {
     {"not.b64", 4, 4, Unit::Int, false, 2},
     {"selp.b64", 4, 4, Unit::Int, false, 2},
     {"shl.b64", 6, 2, Unit::Int, false, 2},
+    {"shladd.u64", 6, 2, Unit::Int, false, 2},  // guess: as a shift
     {"shr.*64", 5, 4, Unit::Int, false, 2},
     {"setp.*.f64", 8, 4.8125},
     {"setp.*64", 8, 4, Unit::Int, false, 2},
     {"abs.s32", 4, 2.625},
     {"bfe.*32", 8, 7.5, Unit::Int, false, 3},
     {"bfi.b32", 8, 9, Unit::Int, false, 4},
+    {"min.s64", 13, 4, Unit::Int, false, 4},  // these were listed, not measured
+    {"min.u64", 13, 4, Unit::Int, false, 4},
+    {"max.s64", 13, 4, Unit::Int, false, 4},
+    {"max.u64", 13, 4, Unit::Int, false, 4},
     {"clz.b32", 23, 8, Unit::Count, false, 2},
     // Integer division and remainder are sequences.
     {"div.s32", 131, 33, Unit::Count, false, 23},
@@ -92,9 +97,14 @@ constexpr OpTime kTimes[] = {
     {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"lg2.approx.f32", 39, 8, Unit::Count, false, 4},
     {"sqrt.approx.f32", 39, 8, Unit::Count, false, 4},
+    // In a chain of its own results the assembler leaves out the scaling of small operands, which kernels
+    // have.
+    {"ex2.approx.f32", 39, 8, Unit::Count, false, 4},
     {"sin.approx*", 23, 8, Unit::Count, false, 2},
     {"cos.approx*", 23, 8, Unit::Count, false, 2},
-    {"div.approx*", 23, 8, Unit::Count, false, 2},
+    {"div.approx.ftz*", 23, 8, Unit::Count, false, 2},
+    {"div.approx.f32", 44, 8, Unit::Count, false,
+     6},                                          // its sequence was listed, its latency is a guess by it
     {"div.full*", 40, 8, Unit::Count, false, 7},  // rcp and mul
     {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/backend/calls.h"
 #include "frontend/backend/emit.h"
+#include "frontend/backend/guarded_results.h"
 #include "frontend/backend/if_convert.h"
 #include "frontend/backend/live_words.h"
 #include "frontend/backend/peephole.h"
@@ -18,7 +19,8 @@ isa::Program assemble(VirtualProgram program, const BackendOptions& options, Pas
     return work();
   };
   pass("simplify-code", [&] { simplify_code(program, ops); });
-  pass("convert-selections", [&] { convert_selections(program, ops); });
+  pass("convert-selections", [&] { convert_selections(program, ops, options.slow_paths_end_runs); });
+  if (options.slow_paths_end_runs) pass("guard-results", [&] { guard_selected_results(program, ops); });
   pass("keep-predicates", [&] { keep_predicates_across_calls(program, ops); });
   if (options.schedule)
     pass("schedule", [&] {

@@ -10,18 +10,28 @@
 #include <utility>
 #include <vector>
 
+#include "frontend/backend/slow_paths.h"
+
 namespace glint::frontend {
 namespace {
 
-constexpr size_t kLongestSingleArm = 4, kLongestTwoArms = 6;
+// Limits the instructions of a selection's arms: of one, of one with a load from global memory, and of both.
+struct Longest {
+  size_t single, loading, two;
+};
+constexpr Longest kLongest{4, 4, 6};
+// Source: selections of fused multiply-adds, loads and stores, which one lane or all may take, through the
+// assembler of CUDA 13.0 for sm_90. These are the longest that got guards, where lanes may differ.
+constexpr Longest kLongestOfAssembler{8, 20, 14};
 
 using Instructions = std::vector<VirtualInst>;
 
 class Converter {
  public:
-  Converter(VirtualProgram& program, const Ops& ops)
+  Converter(VirtualProgram& program, const Ops& ops, const Longest& longest)
       : program_(program),
         ops_(ops),
+        longest_(longest),
         predecessors_(program.blocks.size()),
         ssys_(program.blocks.size()),
         mentions_(program.registers.size()) {
@@ -83,9 +93,11 @@ class Converter {
     if (ssys_[block] != 0) return false;
     out = b.code;
     if (!out.empty() && is_plain_branch(out.back())) out.pop_back();
-    if (out.size() > 2 * kLongestTwoArms) return false;
+    if (out.size() > 2 * std::max(longest_.two, longest_.loading)) return false;
     for (const VirtualInst& inst : out) {
-      if (!is_movable(inst) || is_guarded(inst)) return false;
+      if (!is_movable(inst) || is_guarded(inst) ||
+          (longest_.two == kLongestOfAssembler.two && has_slow_path(inst.op)))
+        return false;
       bool writes_condition = false;
       for_each_def(inst, [&](VirtualRegister r) { writes_condition |= r == selection.condition; });
       if (writes_condition) return false;
@@ -131,6 +143,10 @@ class Converter {
     }
   }
 
+  static bool loads_from_global(const VirtualInst& inst) {
+    return row_of(inst).memory.space == isa::Space::Global && is_pure(inst);
+  }
+
   bool convert(BlockId head) {
     Selection s;
     if (!find(head, s) || ssys_[s.merge] != 1) return false;
@@ -142,7 +158,10 @@ class Converter {
     Instructions taken, other;
     if (!arm(s.taken, head, s, taken) || !arm(s.other, head, s, other)) return false;
     const bool has_two = !taken.empty() && !other.empty();
-    if (taken.size() + other.size() > (has_two ? kLongestTwoArms : kLongestSingleArm)) return false;
+    const bool loads = std::any_of(taken.begin(), taken.end(), loads_from_global) ||
+                       std::any_of(other.begin(), other.end(), loads_from_global);
+    const size_t most = has_two ? longest_.two : loads ? longest_.loading : longest_.single;
+    if (taken.size() + other.size() > most) return false;
     rewrite(head, s, std::move(taken), std::move(other));
     return true;
   }
@@ -242,6 +261,7 @@ class Converter {
 
   VirtualProgram& program_;
   const Ops& ops_;
+  const Longest longest_;
   std::vector<std::vector<BlockId>> predecessors_;
   std::vector<uint32_t> ssys_;
   std::vector<uint32_t> mentions_;  // by register
@@ -249,8 +269,8 @@ class Converter {
 
 }  // namespace
 
-void convert_selections(VirtualProgram& program, const Ops& ops) {
-  Converter(program, ops).run();
+void convert_selections(VirtualProgram& program, const Ops& ops, bool like_an_assembler) {
+  Converter(program, ops, like_an_assembler ? kLongestOfAssembler : kLongest).run();
 }
 
 }  // namespace glint::frontend

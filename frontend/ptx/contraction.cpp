@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/contraction.h"
 
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +31,7 @@ class Contraction {
   void run() {
     for (DraftBlock& block : draft_.blocks) {
       products_.clear();
+      count_sums(block);
       std::vector<VirtualInst> out;
       for (VirtualInst& inst : block.code) {
         if (!fuse(inst, out)) out.push_back(inst);
@@ -45,6 +47,26 @@ class Contraction {
   }
 
  private:
+  // Counts by register the sums of the block that may take in a product: the left one if both sources are
+  // products.
+  void count_sums(const DraftBlock& block) {
+    sums_.assign(definitions_.size(), 0);
+    std::set<VirtualRegister> products;
+    for (const VirtualInst& inst : block.code) {
+      const VirtualRegister to = result_of(inst);
+      if (to == kNoRegister) continue;
+      if (free_.at(to).op == 'm') {
+        products.insert(to);
+        continue;
+      }
+      for (size_t k : {size_t{1}, size_t{2}})
+        if (is_register(inst.operands[k]) && products.contains(inst.operands[k].reg)) {
+          ++sums_[inst.operands[k].reg];
+          break;
+        }
+    }
+  }
+
   // Returns the register of a free result, or kNoRegister.
   VirtualRegister result_of(const VirtualInst& inst) const {
     if (!is_real(inst) || inst.operands.empty() || inst.operands[0].kind != VirtualOperand::Kind::Register)
@@ -69,7 +91,7 @@ class Contraction {
   }
 
   const VirtualInst* product(const VirtualOperand& o, const std::string& suffix) const {
-    if (!is_register(o) || uses_[o.reg] != 1) return nullptr;
+    if (!is_register(o) || uses_[o.reg] != sums_[o.reg]) return nullptr;
     const auto found = products_.find(o.reg);
     return found != products_.end() && free_.at(o.reg).suffix == suffix ? &found->second : nullptr;
   }
@@ -116,6 +138,7 @@ class Contraction {
   const FreeArithmetic& free_;
   VirtualProgram& program_;
   std::vector<uint32_t> definitions_, uses_;
+  std::vector<uint32_t> sums_;                       // of the block, by product
   std::map<VirtualRegister, VirtualInst> products_;  // products of the block so far
 };
 

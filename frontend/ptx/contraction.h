@@ -17,7 +17,7 @@ struct FreeResult {
 };
 using FreeArithmetic = std::map<VirtualRegister, FreeResult>;
 
-// Fuses each such sum with a product of the same block and kind that nothing else reads, if the product's
+// Fuses each such sum with a product of the same block and kind that only such sums read, if the product's
 // factors still have their values. Where both operands are products the left one is fused, as measured: on
 // the hardware, `mul x, a, b; mul y, c, d; sub z, x, y` is fma(a, b, -y).
 void contract(Draft& draft, const FreeArithmetic& free, VirtualProgram& program);

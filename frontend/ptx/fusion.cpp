@@ -42,7 +42,7 @@ class Fusion {
         drop_result(inst);
         if (is_guarded(inst)) continue;
         if (!fuse_sum(inst) && !fuse_bound(inst) && !fuse_logic(inst) && !fuse_high_word(inst))
-          if (!fuse_extension(inst)) fuse_stride(inst);
+          if (!fuse_extension(inst) && !fuse_stride(inst) && !fuse_wide_sum(inst)) fuse_conversion(inst);
       }
     }
   }
@@ -306,6 +306,43 @@ class Fusion {
     return true;
   }
 
+  // Adds to a product or to a shifted value of 64 bits.
+  bool fuse_wide_sum(VirtualInst& inst) {
+    if (inst.op != ops_.add_u64 && inst.op != ops_.add_s64) return false;
+    for (size_t k : {size_t{1}, size_t{2}}) {
+      const VirtualInst* source = feeder(inst.operands[k], inst);
+      const VirtualOperand other = inst.operands[3 - k];
+      const bool multiplies = source && (source->op == mul_lo_u64_ || source->op == mul_lo_s64_);
+      if ((!multiplies && !(source && source->op == ops_.shl_b64)) || !is_word(other)) continue;
+      const VirtualOperand a = source->operands[1], b = source->operands[2];
+      if (!is_register(a)) continue;
+      if (multiplies) {
+        if (!is_word(b) || (is_constant(b) && is_constant(other))) continue;
+        absorb(inst, mad_lo_u64_, {a, b, other}, *source);
+        return true;
+      }
+      if (is_constant(b) && b.constant < 32 && is_register(other)) {
+        absorb(inst, shladd_, {a, b, other}, *source);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Converts the low byte or half of a word without a mask.
+  void fuse_conversion(VirtualInst& inst) {
+    if (inst.op != float_of_u32_) return;
+    const VirtualInst* source = feeder(inst.operands[1], inst);
+    if (!source || source->op != and_b32_) return;
+    for (size_t k : {size_t{1}, size_t{2}}) {
+      const VirtualOperand from = source->operands[3 - k], mask = source->operands[k];
+      if (!is_register(from) || !is_constant(mask) || (mask.constant != 0xff && mask.constant != 0xffff))
+        continue;
+      absorb(inst, mask.constant == 0xff ? float_of_u8_ : float_of_u16_, {from}, *source);
+      return;
+    }
+  }
+
   // Turns an atomic whose old value nobody reads into a reduction.
   void drop_result(VirtualInst& inst) {
     const std::string_view name = row_of(inst).name;
@@ -327,6 +364,11 @@ class Fusion {
                  subsub_ = isa::op_index("subsub.u32");
   const uint16_t shradd_u32_ = isa::op_index("shradd.u32"), shradd_s32_ = isa::op_index("shradd.s32");
   const uint16_t mul_hi_u32_ = isa::op_index("mul.hi.u32");
+  const uint16_t mul_lo_u64_ = isa::op_index("mul.lo.u64"), mul_lo_s64_ = isa::op_index("mul.lo.s64"),
+                 mad_lo_u64_ = isa::op_index("mad.lo.u64"), shladd_ = isa::op_index("shladd.u64");
+  const uint16_t float_of_u32_ = isa::op_index("cvt.rn.f32.u32"),
+                 float_of_u16_ = isa::op_index("cvt.rn.f32.u16"),
+                 float_of_u8_ = isa::op_index("cvt.rn.f32.u8");
   const uint16_t and_b32_ = isa::op_index("and.b32"), or_b32_ = isa::op_index("or.b32"),
                  xor_b32_ = isa::op_index("xor.b32"), not_b32_ = isa::op_index("not.b32"),
                  lop3_ = isa::op_index("lop3.b32"), and_b64_ = isa::op_index("and.b64");

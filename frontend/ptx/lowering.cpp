@@ -282,6 +282,10 @@ void KernelLowering::statements(const std::vector<Statement>& list) {
         break;
       case Statement::Kind::Targets:
         break;
+      case Statement::Kind::Pragma:
+        if (block_ != kNoBlock && s.label.find("nounroll") != std::string::npos)
+          draft_.blocks[block_].may_unroll = false;
+        break;
     }
   }
 }

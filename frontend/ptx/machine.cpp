@@ -149,7 +149,11 @@ class Shaping {
   }
   bool is_word_load(const VirtualInst& inst) const {
     if (!is_real(inst) || inst.op != load_shared_ || is_merged(inst) || is_guarded(inst)) return false;
-    return definition(inst.operands[0]) && definition(inst.operands[1]);
+    return definition(inst.operands[0]) && (is_constant(inst.operands[1]) || definition(inst.operands[1]));
+  }
+
+  static bool is_same_place(const VirtualOperand& a, const VirtualOperand& b) {
+    return a.kind == b.kind && a.reg == b.reg && a.constant == b.constant;
   }
 
   // Merges loads into vectors. Nothing between the loads of a group writes memory or waits.
@@ -159,7 +163,7 @@ class Shaping {
       std::vector<VirtualInst*> group;
       for (size_t i = begin; i < block.code.size() && is_pure(block.code[i]); ++i) {
         VirtualInst& inst = block.code[i];
-        if (is_word_load(inst) && inst.operands[1].reg == block.code[begin].operands[1].reg)
+        if (is_word_load(inst) && is_same_place(inst.operands[1], block.code[begin].operands[1]))
           group.push_back(&inst);
       }
       for (size_t words : {size_t{4}, size_t{2}})

@@ -288,8 +288,9 @@ class Parser {
     } else if (in_.is(Token::Kind::DotWord)) {
       const std::string directive = in_.next().text;
       if (directive == "loc" || directive == "file") return skip_line_directive();
-      if (directive == "pragma") return skip_to_semicolon();
-      in_.fail(s.position, fmt::format("'.{}' has no meaning here", directive));
+      if (directive != "pragma") in_.fail(s.position, fmt::format("'.{}' has no meaning here", directive));
+      s.kind = Statement::Kind::Pragma;
+      while (!in_.at_end() && !in_.accept(";")) s.label += in_.next().text;
     } else if (in_.is(Token::Kind::Word) && in_.peek(1).kind == Token::Kind::Mark &&
                in_.peek(1).text == ":") {
       s.label = in_.next().text;

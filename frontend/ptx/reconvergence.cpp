@@ -12,6 +12,7 @@
 // join of a region around the loop, which is_sound() checks.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <set>
 #include <utility>
@@ -275,32 +276,42 @@ class Reconvergence {
     draft_.layout = std::move(layout);
   }
 
-  // Leads the edges into block `to` through its join and the ssy instructions that they need.
+  // Leads the edges into block `to` through its join and the ssy instructions that they need. Regions that
+  // all ways into the block enter last are pushed by the block itself, just before it ends.
   void connect(BlockId to, const std::vector<Edge>& edges) {
     const bool has_join = joins_.contains(to);
-    const std::vector<BlockId> behind_join = has_join ? entered(to, to, true) : std::vector<BlockId>{};
-    // If all ways into the block enter the same regions, the block itself pushes them, just before it ends.
-    const std::vector<BlockId>& first = has_join ? behind_join : edges.front().enters;
-    const bool same = std::all_of(edges.begin(), edges.end(),
-                                  [&](const Edge& e) { return e.to_join || e.enters == first; });
-    if (same) at_end_[to] = first;
-    if (has_join && !same) push_all(block(joins_[to]).code, behind_join, block(to).line);
-    for (const Edge& edge : edges) {
-      DraftBlock& from = block(edge.from);
-      BlockId& target = edge.taken ? from.taken : from.next;
-      if (edge.to_join) {
-        target = joins_[to];
-      } else if (!same && !edge.enters.empty()) {
-        if (from.end == DraftBlock::End::Goto) {
-          on_edge_[edge.from] = edge.enters;
-        } else {
-          const BlockId between = new_block("", to, from.line);
-          push_all(block(between).code, edge.enters, block(edge.from).line);
-          DraftBlock& again = block(edge.from);  // new_block() may have moved the block.
-          (edge.taken ? again.taken : again.next) = between;
-          behind_[edge.from].push_back(between);
-        }
-      }
+    std::vector<BlockId> behind_join = has_join ? entered(to, to, true) : std::vector<BlockId>{};
+    std::vector<BlockId> shared = has_join ? behind_join : edges.front().enters;
+    for (const Edge& edge : edges)
+      if (!edge.to_join) keep_common_end(shared, edge.enters);
+    at_end_[to] = shared;
+    if (has_join) {
+      behind_join.resize(behind_join.size() - shared.size());
+      push_all(block(joins_[to]).code, behind_join, block(to).line);
+    }
+    for (Edge edge : edges) {
+      if (!edge.to_join) edge.enters.resize(edge.enters.size() - shared.size());
+      lead(edge, to);
+    }
+  }
+  static void keep_common_end(std::vector<BlockId>& a, const std::vector<BlockId>& b) {
+    size_t common = 0;
+    while (common < std::min(a.size(), b.size()) && a[a.size() - 1 - common] == b[b.size() - 1 - common])
+      ++common;
+    a.erase(a.begin(), a.end() - std::ptrdiff_t(common));
+  }
+  void lead(const Edge& edge, BlockId to) {
+    DraftBlock& from = block(edge.from);
+    if (edge.to_join) {
+      (edge.taken ? from.taken : from.next) = joins_[to];
+    } else if (!edge.enters.empty() && from.end == DraftBlock::End::Goto) {
+      on_edge_[edge.from] = edge.enters;
+    } else if (!edge.enters.empty()) {
+      const BlockId between = new_block("", to, from.line);
+      push_all(block(between).code, edge.enters, block(edge.from).line);
+      DraftBlock& again = block(edge.from);  // new_block() may have moved the block.
+      (edge.taken ? again.taken : again.next) = between;
+      behind_[edge.from].push_back(between);
     }
   }
 

@@ -76,8 +76,15 @@ struct Declaration {
 };
 
 struct Statement {
-  enum class Kind : uint8_t { Label, Instruction, Declaration, Scope, Targets } kind = Kind::Instruction;
-  std::string label;  // of a Label; for Targets, the name of the list
+  enum class Kind : uint8_t {
+    Label,
+    Instruction,
+    Declaration,
+    Scope,
+    Targets,
+    Pragma
+  } kind = Kind::Instruction;
+  std::string label;  // of a Label; for Targets, the name of the list; for a Pragma, its text
   Instruction instruction;
   Declaration declaration;
   std::vector<Statement> body;       // of a Scope

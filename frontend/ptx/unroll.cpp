@@ -6,41 +6,64 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
-#include "frontend/backend/slots.h"
 #include "frontend/backend/slow_paths.h"
+#include "frontend/ptx/constant_words.h"
+#include "frontend/ptx/loop_body.h"
 
 namespace glint::frontend::ptx {
 namespace {
 
 constexpr int64_t kTurns = 4;  // turns unrolled at a time; of the rest, two at a time
-// Limits the instructions of a body. Choice: with 64, the counts of the calibration kernels, in which all
-// lanes count alike, match an H200. In kernels whose lanes may count differently, the H200's compiler has
-// copied a body of 20 instructions and left one of 45 alone (h_spmv, h_chase of bench/held_out).
-constexpr size_t kMostCode = 64, kMostCodeOfEach = 32;
+
+// Limits what is unrolled. Source: loops of fused multiply-adds, integer ops, and loads from global and
+// shared memory, with constant and unknown numbers of turns, through the assembler of CUDA 13.0 for sm_90.
+// The numbers are the largest bodies of which it made copies; a load counts twice there. Without loads it
+// copies short bodies only. Choice: a body with a barrier may have 64, because the assembler copies one of 46
+// (k_matmul_tiled of the calibration kernels).
+constexpr size_t kMostWithoutLoads = 18, kMoreForSharedLoad = 5, kMoreForLoad = 26, kMostOfUnknown = 44;
+constexpr size_t kMostOfKnown = 64;  // where the number of turns is constant, but too large for one run
+constexpr size_t kMostWithBarrier = 64;
+constexpr int64_t kMostTurns = 256, kMostWhole = 1024;
+// Returns the largest number of instructions that all turns of a loop together may have to become one run.
+constexpr double most_of_whole(int64_t turns) {
+  constexpr double kLeast = 384, kMoreForTurn = 13.2;
+  return std::min(double(kMostWhole), kLeast + kMoreForTurn * double(std::max<int64_t>(turns - 3, 0)));
+}
 
 // Handles one loop: its block, and the registers of its copies.
 class CountedLoop {
  public:
   CountedLoop(Draft& draft, VirtualProgram& program, BlockId at)
-      : draft_(draft), program_(program), at_(at) {}
+      : draft_(draft), program_(program), at_(at), body_(draft, program, at) {}
 
   bool run() {
     const DraftBlock& block = draft_.blocks[at_];
     if (block.end != DraftBlock::End::Branch || block.taken != at_ || block.next == at_ || block.negate ||
-        block.code.size() > kMostCode)
+        block.code.empty() || !block.may_unroll)
       return false;
     const auto all = [&](bool (*holds)(const VirtualInst&)) {
       return std::all_of(block.code.begin(), block.code.end(), holds);
     };
-    if (!all(can_be_copied)) return false;
-    find_definitions(block);
-    if (!find_counter(block)) return false;
-    const bool needs_together = !all(is_a_lane_s_own) || block.code.size() > kMostCodeOfEach;
-    if (needs_together && !lanes_count_together()) return false;
+    if (!all(can_be_copied) || !find_test(block)) return false;
+    // A load of one value counts twice, and one of a vector once.
+    const bool waits = !all(is_no_barrier);
+    const size_t size = size_t(std::count_if(block.code.begin(), block.code.end() - 1,
+                                             [&](const VirtualInst& inst) { return !vanishes(inst); })) +
+                        (waits ? 0 : loads(isa::Space::Global, true) + loads(isa::Space::Shared, true));
+    const std::optional<int64_t> turns = known_turns(block);
+    if (turns && double(*turns * int64_t(size)) < most_of_whole(*turns)) {
+      become_whole(*turns);
+      return true;
+    }
+    if (!counts_to_end(block.code.back()) || size > (turns   ? kMostOfKnown
+                                                     : waits ? kMostWithBarrier
+                                                             : most_of_unknown()))
+      return false;
+    if (!all(is_a_lane_s_own) && !lanes_count_together()) return false;
     append();
     return true;
   }
@@ -50,65 +73,118 @@ class CountedLoop {
     return is_real(inst) && !is_guarded(inst) && !has_slow_path(inst.op) &&
            isa::effect_row(row_of(inst).effect).freedom.may_copy;
   }
+  static bool is_no_barrier(const VirtualInst& inst) { return row_of(inst).effect != isa::Effect::Barrier; }
   // Returns false for instructions that involve other lanes. Unrolling could separate lanes of a warp that
   // were in one turn into different copies.
   static bool is_a_lane_s_own(const VirtualInst& inst) {
     return is_pure(inst) && row_of(inst).unit != isa::Unit::Shuffle && row_of(inst).name != "activemask.b32";
   }
 
-  void find_definitions(const DraftBlock& block) {
-    for (const VirtualInst& inst : block.code)
-      for_each_def(inst, [&](VirtualRegister r) { ++definitions_[r]; });
-    std::set<VirtualRegister> written;
-    for (const VirtualInst& inst : block.code) {
-      for_each_use(inst, [&](VirtualRegister r) {
-        if (definitions_.contains(r) && !written.contains(r)) kept_.insert(r);
-      });
-      for_each_def(inst, [&](VirtualRegister r) { written.insert(r); });
-      if (const auto step = step_of(inst)) steps_[inst.operands[0].reg] = *step;
-    }
-    for (BlockId b = 0; b < draft_.blocks.size(); ++b) {
-      if (b == at_) continue;
-      for (const VirtualInst& inst : draft_.blocks[b].code)
-        for_each_use(inst, [&](VirtualRegister r) {
-          if (definitions_.contains(r)) kept_.insert(r);
-        });
-      if (definitions_.contains(draft_.blocks[b].condition)) kept_.insert(draft_.blocks[b].condition);
-    }
+  size_t loads(isa::Space space, bool of_one_value = false) const {
+    const std::vector<VirtualInst>& code = draft_.blocks[at_].code;
+    return size_t(std::count_if(code.begin(), code.end(), [&](const VirtualInst& inst) {
+      return row_of(inst).memory.space == space && row_of(inst).unit == isa::Unit::Lsu &&
+             (!of_one_value || inst.operands.size() == 2);
+    }));
   }
-
-  // Returns the constant that the instruction adds to a register which nothing else changes.
-  std::optional<int64_t> step_of(const VirtualInst& inst) const {
-    const bool narrow = inst.op == ops_.add_s32 || inst.op == ops_.add_u32,
-               wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
-    if (!narrow && !wide) return std::nullopt;
-    const VirtualOperand &to = inst.operands[0], &from = inst.operands[1], &by = inst.operands[2];
-    if (!is_register(from) || from.reg != to.reg || !is_constant(by) || definitions_.at(to.reg) != 1)
-      return std::nullopt;
-    const int64_t step = narrow ? int64_t{int32_t(uint32_t(by.constant))} : int64_t(by.constant);
-    constexpr int64_t kMost = 1 << 24;
-    return step > -kMost && step < kMost ? std::optional(step) : std::nullopt;
-  }
-
-  // Finds the counter in the last test: `setp.ne.s32 p, r, 0` after r was decremented, or `setp.lt.s32 p, r,
-  // bound` after r was incremented.
-  bool find_counter(const DraftBlock& block) {
-    if (block.code.empty() || kept_.contains(block.condition)) return false;
-    const VirtualInst& test = block.code.back();
-    if ((test.op != setp_ne_s32_ && test.op != setp_lt_s32_) || test.operands[0].reg != block.condition ||
-        definitions_[block.condition] != 1)
+  // Returns true for a sum of a constant and a register that steps: displacements and constants take its
+  // place.
+  bool vanishes(const VirtualInst& inst) const {
+    if (inst.op != ops_.add_s32 && inst.op != ops_.add_u32 && inst.op != ops_.add_s64 &&
+        inst.op != ops_.add_u64)
       return false;
-    const VirtualOperand &value = test.operands[1], &end = test.operands[2];
-    if (!is_register(value) || !steps_.contains(value.reg) ||
-        program_.registers[value.reg] != RegisterClass::B32)
+    return is_register(inst.operands[1]) && body_.step(inst.operands[1].reg) && is_constant(inst.operands[2]);
+  }
+  size_t most_of_unknown() const {
+    return std::min(kMostOfUnknown, kMostWithoutLoads + kMoreForSharedLoad * loads(isa::Space::Shared) +
+                                        kMoreForLoad * loads(isa::Space::Global));
+  }
+
+  // Finds the counter, which steps by a constant, in the last test.
+  bool find_test(const DraftBlock& block) {
+    const VirtualInst& test = block.code.back();
+    if (body_.keeps(block.condition) || !row_of(test).name.starts_with("setp.") ||
+        test.operands.size() != 3 || test.operands[0].reg != block.condition ||
+        !body_.writes_once(block.condition))
+      return false;
+    const VirtualOperand& value = test.operands[1];
+    if (!is_register(value) || !body_.step(value.reg) || program_.registers[value.reg] != RegisterClass::B32)
       return false;
     counter_ = value.reg;
-    end_ = end;
+    end_ = test.operands[2];
+    return is_constant(end_) || (is_register(end_) && !body_.writes(end_.reg));
+  }
+  // Returns true for `setp.ne.s32 p, r, 0` after r was decremented, and for `setp.lt.s32 p, r, bound` after r
+  // was incremented.
+  bool counts_to_end(const VirtualInst& test) {
     counts_up_ = test.op == setp_lt_s32_;
-    if (counts_up_)
-      return steps_[counter_] > 0 &&
-             (is_constant(end) || (is_register(end) && !definitions_.contains(end.reg)));
-    return steps_[counter_] < 0 && is_constant(end) && end.constant == 0;
+    if (counts_up_) return *body_.step(counter_) > 0;
+    return test.op == setp_ne_s32_ && *body_.step(counter_) < 0 && is_constant(end_) && end_.constant == 0;
+  }
+
+  // Returns the constant that the register holds when the loop begins, if one block leads to the loop, and it
+  // or the blocks that alone lead to it set the register.
+  std::optional<uint64_t> start_of(VirtualRegister r) const {
+    BlockId b = at_;
+    for (size_t hops = 0; hops < draft_.blocks.size(); ++hops) {
+      BlockId before = kNoBlock;
+      for (BlockId p = 0; p < draft_.blocks.size(); ++p) {
+        const std::vector<BlockId> next = draft_.blocks[p].successors();
+        if (p == at_ || std::find(next.begin(), next.end(), b) == next.end()) continue;
+        if (before != kNoBlock) return {};
+        before = p;
+      }
+      if (before == kNoBlock) return {};
+      b = before;
+      const std::vector<VirtualInst>& code = draft_.blocks[b].code;
+      for (size_t i = code.size(); i-- > 0;) {
+        bool writes = false;
+        for_each_def(code[i], [&](VirtualRegister written) { writes |= written == r; });
+        if (!writes) continue;
+        return ConstantWords().value_of(code[i]);
+      }
+    }
+    return {};
+  }
+
+  // Returns the number of turns if it is a constant of at most kMostTurns.
+  std::optional<int64_t> known_turns(const DraftBlock& block) const {
+    const std::optional<uint64_t> start = start_of(counter_);
+    if (!start || !is_constant(end_)) return {};
+    const std::string_view test = row_of(block.code.back()).name;
+    const bool is_signed = test.ends_with(".s32");
+    if (!is_signed && !test.ends_with(".u32")) return {};
+    const auto extended = [&](uint64_t x) {
+      return is_signed ? int64_t{int32_t(uint32_t(x))} : int64_t{uint32_t(x)};
+    };
+    const int64_t end = extended(end_.constant);
+    for (int64_t turns = 1; turns <= kMostTurns; ++turns) {
+      const int64_t value = extended(*start + uint64_t(turns * *body_.step(counter_)));
+      const std::string_view relation = test.substr(5, 3);
+      if (relation == "ne."   ? value == end
+          : relation == "eq." ? value != end
+          : relation == "lt." ? value >= end
+          : relation == "le." ? value > end
+          : relation == "gt." ? value <= end
+          : relation == "ge." ? value < end
+                              : false)
+        return turns;
+    }
+    return {};
+  }
+
+  // Puts all turns in place of the loop. The registers that step are constants where they start as constants.
+  void become_whole(int64_t turns) {
+    std::vector<VirtualInst> code;
+    body_.begin_copies();
+    for (VirtualRegister r = 0, end = VirtualRegister(program_.registers.size()); r < end; ++r)
+      if (const auto start = body_.step(r) ? start_of(r) : std::nullopt) body_.starts_with(r, *start, code);
+    for (int64_t turn = 0; turn < turns; ++turn) body_.copy(turn, turn + 1 == turns, code);
+    DraftBlock& block = draft_.blocks[at_];
+    block.code = std::move(code);
+    block.end = DraftBlock::End::Goto;
+    block.condition = kNoRegister;
+    block.taken = kNoBlock;
   }
 
   // Returns true when all lanes in the loop are in the same turn and leave the loop together.
@@ -146,71 +222,7 @@ class CountedLoop {
     return uniform;
   }
 
-  static VirtualOperand constant_of(int64_t value, bool wide) {
-    return VirtualOperand::value(wide ? uint64_t(value) : uint64_t(uint32_t(value)));
-  }
-  bool is_wide(VirtualRegister r) const { return program_.registers[r] == RegisterClass::B64; }
-  VirtualOperand now(const VirtualOperand& o) const {
-    if (!is_register(o)) return o;
-    const auto found = names_.find(o.reg);
-    return found == names_.end() ? o : VirtualOperand::of(found->second);
-  }
-
-  void copy_body(int64_t turn, bool last, std::vector<VirtualInst>& out) {
-    const std::vector<VirtualInst> code = draft_.blocks[at_].code;
-    for (size_t i = 0; i + 1 < code.size(); ++i) {  // leaves out the test
-      VirtualInst inst = code[i];
-      if (const auto step = step_of(inst)) {
-        const VirtualRegister from = inst.operands[0].reg;
-        inst.operands[2] = constant_of((turn + 1) * *step, is_wide(from));
-        stepped_[from] = turn + 1;
-      } else if (!take_from_first(inst, turn, i)) {
-        for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
-          if (!isa::is_destination(kind)) inst.operands[slot] = now(inst.operands[slot]);
-        });
-      }
-      std::vector<VirtualRegister> to;
-      for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
-        VirtualOperand& o = inst.operands[slot];
-        if (!isa::is_destination(kind) || !is_register(o)) return;
-        if (last && kept_.contains(o.reg)) {
-          names_.erase(o.reg);
-          return;
-        }
-        const VirtualRegister fresh = program_.new_register(program_.registers[o.reg]);
-        names_[o.reg] = fresh;
-        o = VirtualOperand::of(fresh);
-      });
-      if (turn == 0 && !inst.operands.empty()) first_[i] = inst.operands[0];
-      out.push_back(std::move(inst));
-    }
-  }
-
-  // Rewrites a sum of a stepping register and a constant one as the first turn's sum plus the steps since
-  // then.
-  bool take_from_first(VirtualInst& inst, int64_t turn, size_t i) const {
-    const bool wide = inst.op == ops_.add_s64 || inst.op == ops_.add_u64;
-    if (turn == 0 || (!wide && inst.op != ops_.add_s32 && inst.op != ops_.add_u32) ||
-        kept_.contains(inst.operands[0].reg))
-      return false;
-    for (size_t k : {size_t{1}, size_t{2}}) {
-      const VirtualOperand &moving = inst.operands[k], &other = inst.operands[3 - k];
-      if (!is_register(moving) || !steps_.contains(moving.reg) || !is_register(other) ||
-          definitions_.contains(other.reg))
-        continue;
-      // The first turn and this turn must both read the register before its step, or both after it.
-      const int64_t behind = stepped_.contains(moving.reg) && stepped_.at(moving.reg) > turn;
-      if (behind != int64_t{is_behind(i, moving.reg)}) return false;
-      inst.operands = {inst.operands[0], first_.at(i), constant_of(turn * steps_.at(moving.reg), wide)};
-      return true;
-    }
-    return false;
-  }
-  bool is_behind(size_t i, VirtualRegister r) const {
-    const std::vector<VirtualInst>& code = draft_.blocks[at_].code;
-    return std::any_of(code.begin(), code.begin() + std::ptrdiff_t(i),
-                       [&](const VirtualInst& inst) { return step_of(inst) && inst.operands[0].reg == r; });
-  }
+  static VirtualOperand word(int64_t value) { return VirtualOperand::value(uint64_t(uint32_t(value))); }
 
   BlockId add_block(std::vector<VirtualInst> code, BlockId next) {
     DraftBlock block;
@@ -238,19 +250,17 @@ class CountedLoop {
   // Returns the bound that the counter must not have reached if it is to last for `turns` turns. The
   // subtraction saturates, so that no counter can be below the lowest bound.
   VirtualOperand limit(int64_t turns) {
-    const int64_t way = steps_[counter_] * (turns - 1);
-    if (!counts_up_) return constant_of(-way, false);
+    const int64_t way = *body_.step(counter_) * (turns - 1);
+    if (!counts_up_) return word(-way);
     if (turns == 1) return end_;
     if (is_constant(end_))
-      return constant_of(std::max<int64_t>(int64_t{int32_t(uint32_t(end_.constant))} - way, INT32_MIN),
-                         false);
+      return word(std::max<int64_t>(int64_t{int32_t(uint32_t(end_.constant))} - way, INT32_MIN));
     const auto [found, is_new] = limits_.try_emplace(turns, kNoRegister);
     if (is_new) {
       found->second = program_.new_register(RegisterClass::B32);
       std::vector<VirtualInst>& code = draft_.blocks[first_block_].code;
-      code.insert(code.begin(),
-                  make_inst(sub_sat_s32_, {VirtualOperand::of(found->second), end_, constant_of(way, false)},
-                            draft_.blocks[at_].line));
+      code.insert(code.begin(), make_inst(sub_sat_s32_, {VirtualOperand::of(found->second), end_, word(way)},
+                                          draft_.blocks[at_].line));
     }
     return VirtualOperand::of(found->second);
   }
@@ -258,9 +268,9 @@ class CountedLoop {
   // Appends copies of the body as one block, whose loads the scheduler may issue together. Returns the block.
   // It goes to `next`, or to the block that follows it.
   BlockId add_turns(int64_t turns, BlockId next = kNoBlock) {
-    stepped_.clear(), names_.clear(), first_.clear();
     std::vector<VirtualInst> code;
-    for (int64_t turn = 0; turn < turns; ++turn) copy_body(turn, turn + 1 == turns, code);
+    body_.begin_copies();
+    for (int64_t turn = 0; turn < turns; ++turn) body_.copy(turn, turn + 1 == turns, code);
     return add_block(std::move(code), next != kNoBlock ? next : BlockId(draft_.blocks.size()) + 1);
   }
 
@@ -290,22 +300,16 @@ class CountedLoop {
   Draft& draft_;
   VirtualProgram& program_;
   const BlockId at_;
+  LoopBody body_;
   const Ops ops_;
   const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
   const uint16_t setp_lt_s32_ = isa::op_index("setp.lt.s32"), sub_sat_s32_ = isa::op_index("sub.sat.s32");
   VirtualRegister counter_ = kNoRegister;
   VirtualOperand end_;  // bound of the counter
   bool counts_up_ = false;
-  std::map<int64_t, VirtualRegister> limits_;   // by number of turns, if the bound is in a register
-  std::map<VirtualRegister, int> definitions_;  // number of definitions in the loop, by register
-  // Holds the defined registers that the next turn or other blocks read.
-  std::set<VirtualRegister> kept_;
-  std::map<VirtualRegister, int64_t> steps_;          // constant that a turn adds
-  std::map<VirtualRegister, int64_t> stepped_;        // turns that the copies so far have done
-  std::map<VirtualRegister, VirtualRegister> names_;  // present name in the copies
-  std::map<size_t, VirtualOperand> first_;            // result of each instruction in the first turn
-  BlockId first_block_ = kNoBlock;                    // first of the new blocks
-  std::vector<BlockId> layout_;                       // the new blocks, in order
+  std::map<int64_t, VirtualRegister> limits_;  // by number of turns, if the bound is in a register
+  BlockId first_block_ = kNoBlock;             // first of the new blocks
+  std::vector<BlockId> layout_;                // the new blocks, in order
 };
 
 }  // namespace

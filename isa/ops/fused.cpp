@@ -57,6 +57,11 @@ constexpr auto kRows = joined_rows(
         "Subtracts the product of the first two sources from the third exactly, and rounds to nearest even.",
         [](float a, float b, float c) { return canonical(__builtin_fmaf(-a, b, c)); },
         {{{kOne, kTwo, kOne}, kOne | kSign}, {{0x3f80'0001, 0x3f80'0001, 0x3f80'0002}, 0xa880'0000}}),
+    value_op<uint64_t, uint32_t, uint64_t>(
+        "shladd.u64", Unit::Int,
+        "Shifts the first source left by the second, as shl does, and adds the third.",
+        [](uint64_t a, uint32_t n, uint64_t b) { return (n < 64 ? a << n : 0) + b; },
+        {{{3, 2, 5}, 17}, {{uint64_t{1} << 63, 1, 9}, 9}}),
     rows_of_types<TypeS32, TypeU32>([]<class N>() { return order_rows<N>(); }));
 
 }  // namespace

@@ -221,7 +221,8 @@ TEST_CASE(
 TEST_CASE("the negation of a product becomes that of a factor from elsewhere, to the bit") {
   const std::string text = shaped(
       "cvt.rn.f32.u32 %f6,%lane;sub.rn.f32 %f1,%f6,0f40A00000;mov.u32 %r1,0;mov.u32 %r2,0;\n"
-      "LOOP: cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 %f3,%f1,%f2;neg.f32 "
+      "LOOP: .pragma \"nounroll\";cvt.rn.f32.u32 %f7,%r1;sub.rn.f32 %f2,%f7,0f40000000;mul.f32 "
+      "%f3,%f1,%f2;neg.f32 "
       "%f4,%f3;add.rn.f32 %f5,%f4,%f2;mov.b32 %r3,%f5;\n"
       "mad.lo.u32 %r2,%r2,31,%r3;add.u32 %r1,%r1,1;setp.lt.u32 %p1,%r1,5;@%p1 bra LOOP;\nmov.u32 "
       "%out,%r2;\n");

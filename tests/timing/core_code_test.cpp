@@ -122,7 +122,7 @@ TEST_CASE("what depends on a constant that misses waits for its time after the l
   CHECK(core.run() == 30 + 26 + 2);
 }
 
-TEST_CASE("a constant load takes a turn for each different word") {
+TEST_CASE("a constant load takes a turn for each different address") {
   for (const uint32_t words : {1u, 2u, 32u}) {
     CAPTURE(words);
     Code code;
@@ -138,10 +138,27 @@ TEST_CASE("a constant load takes a turn for each different word") {
     params.units.constant = {26, 2};
     OneCore core(code, params, {});
 
-    // The line comes in 8, and the result in 26 and two for each word but one.
+    // The line comes in 8, and the result in 26 and two for each address but one.
     CHECK(core.run() == 8 + 26 + 2 * (words - 1) + 2);
     CHECK(stall(core, Stall::MathThrottle) == 2 * words - 1);
   }
+}
+
+TEST_CASE("turns of a constant load may be further apart, and later still in its result") {
+  Code code;
+  code.add("ld.const.b8", {reg(2), special(isa::Special::LaneId)});
+  code.add("ld.const.b8", {reg(4), special(isa::Special::LaneId)}, 256);
+  code.add("add.u32", {reg(3), reg(2), reg(2)});
+  code.add("exit");
+  Params params = quick_params();
+  params.constant.serial = true;
+  params.constant.place_interval = 8;
+  params.constant.place_latency = 11;
+  params.units.constant = {26, 2};
+  OneCore core(code, params, {});
+
+  CHECK(core.run() == 26 + 11 * 31 + 2);
+  CHECK(stall(core, Stall::MathThrottle) == 2 + 8 * 31 - 1);
 }
 
 }  // namespace glint::core
