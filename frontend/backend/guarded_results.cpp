@@ -49,7 +49,10 @@ class Guarding {
       const VirtualOperand other = inst.operands[3 - k];
       if (!source || !is_register(other)) continue;
       const bool is_result = other.reg == result.reg;
-      if (!is_result && (!registers_.definition(other) || !registers_.is_used_once(other))) continue;
+      // The move that comes before the instruction must not write what the instruction reads.
+      if (!is_result &&
+          (!registers_.definition(other) || !registers_.is_used_once(other) || reads(*source, result.reg)))
+        continue;
       VirtualInst moved = *source;
       gone_[size_t(source - block_->code.data())] = true;
       moved.operands[0] = result;
@@ -61,6 +64,12 @@ class Guarding {
       return is_result ? std::nullopt : std::optional(move);
     }
     return {};
+  }
+
+  static bool reads(const VirtualInst& inst, VirtualRegister r) {
+    bool found = false;
+    for_each_use(inst, [&](VirtualRegister used) { found |= used == r; });
+    return found;
   }
 
   // Returns the instruction of the block that computes the operand for the selection alone, if its sources

@@ -66,6 +66,10 @@ TEST_CASE("an instruction that only a selection reads writes the selection's res
         1);
   CHECK(count(shaped(choose + "popc.b32 %r3,%r1;selp.b32 %r4,%r3,%r2,%p1;xor.b32 %out,%r4,%r3;\n"), "selp") ==
         1);
+  // Both sides read what the selection writes.
+  shaped(choose +
+         "LOOP: and.b32 %r5,%r1,1;setp.eq.u32 %p2,%r5,1;mad.lo.u32 %r3,%r1,3,1;shr.u32 %r4,%r1,1;selp.b32 "
+         "%r1,%r3,%r4,%p2;add.u32 %r2,%r2,1;setp.lt.u32 %p3,%r2,900;@%p3 bra LOOP;mov.u32 %out,%r1;\n");
   // The source changes between the instruction and the selection.
   shaped(choose +
          "mov.u32 %r5,%r1;popc.b32 %r3,%r5;add.u32 %r5,%r5,9;selp.b32 %out,%r3,%r2,%p1;add.u32 "
