@@ -23,7 +23,7 @@ std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name,
   key.put(options.contract);
   key.put(options.queries_call);
   key.put(options.guard_latency);
-  key.put(options.slow_paths_end_runs);
+  key.put(options.like_an_assembler);
   key.put(options.reorder_calls);
   key.put(options.reorder_traces);
   key.put(spirv);

@@ -35,10 +35,11 @@ struct BackendOptions {
   // These emit an instruction where a core may regroup lanes: at the shader's own calls, and before the hit
   // shaders of each trace. Without them a shader's call of reorderThread is nothing.
   bool reorder_calls = false, reorder_traces = false;
-  // With true, the scheduler moves nothing across an op that hardware finishes by a call for rare operands
-  // (backend/slow_paths.h), since the call ends a block of its assembler, and it keeps a run of instructions
-  // within the few registers that this assembler takes, where the run fits (backend/schedule.h).
-  bool slow_paths_end_runs = false;
+  // With true, the backend does as the assembler of the hardware. The scheduler moves nothing across an op
+  // that ends in a call for rare operands (backend/slow_paths.h), and it keeps a run of instructions within
+  // few registers, where the run fits (backend/schedule.h). Selections get guards up to the assembler's
+  // lengths (backend/if_convert.h, backend/guarded_results.h).
+  bool like_an_assembler = false;
 };
 
 // Returns the stage that the file's ending names: .rgen .rint .rahit .rchit .rmiss .rcall .comp, each also

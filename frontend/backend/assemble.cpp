@@ -19,13 +19,12 @@ isa::Program assemble(VirtualProgram program, const BackendOptions& options, Pas
     return work();
   };
   pass("simplify-code", [&] { simplify_code(program, ops); });
-  pass("convert-selections", [&] { convert_selections(program, ops, options.slow_paths_end_runs); });
-  if (options.slow_paths_end_runs) pass("guard-results", [&] { guard_selected_results(program, ops); });
+  pass("convert-selections", [&] { convert_selections(program, ops, options.like_an_assembler); });
+  if (options.like_an_assembler) pass("guard-results", [&] { guard_selected_results(program, ops); });
   pass("keep-predicates", [&] { keep_predicates_across_calls(program, ops); });
   if (options.schedule)
-    pass("schedule", [&] {
-      schedule(program, options.max_registers, options.guard_latency, options.slow_paths_end_runs);
-    });
+    pass("schedule",
+         [&] { schedule(program, options.max_registers, options.guard_latency, options.like_an_assembler); });
   Allocation allocation = pass("allocate", [&] { return allocate(program, options.max_registers, ops); });
   if (options.reorder_calls) pass("count-live-words", [&] { count_live_words(program, allocation); });
   pass("expand-calls", [&] { expand_calls(program, allocation, ops); });

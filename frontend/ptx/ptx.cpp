@@ -56,7 +56,7 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
   if (unsupported.has_errors())
     throw UnsupportedError(fmt::format("{}", fmt::join(unsupported.messages(), "\n")));
   BackendOptions backend = options.backend;
-  backend.slow_paths_end_runs = options.shape;
+  backend.like_an_assembler = options.shape;
   kernel.program = assemble(std::move(program), backend);
   kernel.program.shared_bytes = uint32_t(lowering.static_shared_bytes());
   return kernel;

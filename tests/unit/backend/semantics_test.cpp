@@ -87,7 +87,7 @@ TEST_CASE("Programs that are relieved of values keep their stores") {
 TEST_CASE("Programs that are scheduled like an assembler does keep their stores") {
   for (uint32_t seed = 700; seed <= 760; ++seed) {
     const Shape shape{.statements = 80, .values = int(4 + seed % 24), .calls = seed % 3 == 0};
-    check_same(seed, shape, {.max_registers = 8 + seed * 5 % 240, .slow_paths_end_runs = true});
+    check_same(seed, shape, {.max_registers = 8 + seed * 5 % 240, .like_an_assembler = true});
   }
 }
 
