@@ -8,6 +8,13 @@
 
 namespace glint::frontend {
 
+// Returns true when the instruction reads the register, also as its guard.
+inline bool reads(const VirtualInst& inst, VirtualRegister r) {
+  bool found = false;
+  for_each_use(inst, [&](VirtualRegister used) { found |= used == r; });
+  return found;
+}
+
 // Holds counts by register. They stay valid while instructions are changed in place; a pass that changes
 // operands updates the counts.
 struct DefUse {

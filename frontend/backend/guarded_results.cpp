@@ -66,12 +66,6 @@ class Guarding {
     return {};
   }
 
-  static bool reads(const VirtualInst& inst, VirtualRegister r) {
-    bool found = false;
-    for_each_use(inst, [&](VirtualRegister used) { found |= used == r; });
-    return found;
-  }
-
   // Returns the instruction of the block that computes the operand for the selection alone, if its sources
   // still hold the same values there and it reads no memory and no other lanes.
   VirtualInst* definition_to_move(const VirtualOperand& o, const VirtualInst& selection) const {

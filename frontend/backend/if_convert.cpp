@@ -16,13 +16,15 @@ namespace glint::frontend {
 namespace {
 
 // Limits the instructions of a selection's arms: of one, of one with a load from global memory, and of both.
+// `slow_paths` says whether an arm may have an op with a slow path.
 struct Longest {
   size_t single, loading, two;
+  bool slow_paths;
 };
-constexpr Longest kLongest{4, 4, 6};
+constexpr Longest kLongest{4, 4, 6, true};
 // Source: selections of fused multiply-adds, loads and stores, which one lane or all may take, through the
 // assembler of CUDA 13.0 for sm_90. These are the longest that got guards, where lanes may differ.
-constexpr Longest kLongestOfAssembler{8, 20, 14};
+constexpr Longest kLongestOfAssembler{8, 20, 14, false};
 
 using Instructions = std::vector<VirtualInst>;
 
@@ -95,8 +97,7 @@ class Converter {
     if (!out.empty() && is_plain_branch(out.back())) out.pop_back();
     if (out.size() > 2 * std::max(longest_.two, longest_.loading)) return false;
     for (const VirtualInst& inst : out) {
-      if (!is_movable(inst) || is_guarded(inst) ||
-          (longest_.two == kLongestOfAssembler.two && has_slow_path(inst.op)))
+      if (!is_movable(inst) || is_guarded(inst) || (!longest_.slow_paths && has_slow_path(inst.op)))
         return false;
       bool writes_condition = false;
       for_each_def(inst, [&](VirtualRegister r) { writes_condition |= r == selection.condition; });

@@ -4,9 +4,10 @@
 
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "frontend/backend/slots.h"
+#include "frontend/backend/def_use.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -78,11 +79,6 @@ class Contraction {
     const bool is_it =
         result.op != kNotFree && name.front() == result.op && name.substr(3) == ".rn" + result.suffix;
     return is_it && inst.operands.size() == 3 ? to : kNoRegister;
-  }
-  static bool reads(const VirtualInst& inst, VirtualRegister r) {
-    bool found = false;
-    for_each_use(inst, [&](VirtualRegister used) { found |= used == r; });
-    return found;
   }
   // Drops the products whose factors are no longer what they were: `r` is written, and not for the only time.
   void forget(VirtualRegister r) {

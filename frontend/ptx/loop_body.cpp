@@ -62,10 +62,14 @@ void LoopBody::begin_copies() {
   stepped_.clear(), names_.clear(), values_.clear(), starts_.clear(), first_.clear();
 }
 
+VirtualInst LoopBody::constant_move(VirtualRegister to, uint64_t value, const isa::Line& line) const {
+  return make_inst(is_wide(to) ? ops_.mov_b64 : ops_.mov_b32,
+                   {VirtualOperand::of(to), constant_of(int64_t(value), is_wide(to))}, line);
+}
+
 void LoopBody::starts_with(VirtualRegister r, uint64_t value, std::vector<VirtualInst>& code) {
   const VirtualRegister fresh = program_.new_register(program_.registers[r]);
-  code.push_back(make_inst(is_wide(r) ? ops_.mov_b64 : ops_.mov_b32,
-                           {VirtualOperand::of(fresh), VirtualOperand::value(value)}, block().line));
+  code.push_back(constant_move(fresh, value, block().line));
   names_[r] = fresh, values_[fresh] = value, starts_[r] = value;
 }
 
@@ -83,8 +87,7 @@ void LoopBody::copy(int64_t turn, bool last, std::vector<VirtualInst>& code) {
     const VirtualRegister from = step ? inst.operands[0].reg : kNoRegister;
     if (step && starts_.contains(from)) {
       const uint64_t value = starts_.at(from) + uint64_t((turn + 1) * *step);
-      inst = make_inst(is_wide(from) ? ops_.mov_b64 : ops_.mov_b32,
-                       {inst.operands[0], constant_of(int64_t(value), is_wide(from))}, inst.line);
+      inst = constant_move(from, value, inst.line);
     } else if (step) {
       inst.operands[2] = constant_of((turn + 1) * *step, is_wide(from));
       stepped_[from] = turn + 1;
@@ -107,9 +110,7 @@ void LoopBody::name_results(VirtualInst& inst, bool last) {
     if (value != values_.end()) known.operands[k] = VirtualOperand::value(value->second);
   }
   const std::optional<uint64_t> value = starts_.empty() ? std::nullopt : constants_.value_of(known);
-  if (value)
-    inst = make_inst(is_wide(inst.operands[0].reg) ? ops_.mov_b64 : ops_.mov_b32,
-                     {inst.operands[0], VirtualOperand::value(*value)}, inst.line);
+  if (value) inst = constant_move(inst.operands[0].reg, *value, inst.line);
   for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
     VirtualOperand& o = inst.operands[slot];
     if (!isa::is_destination(kind) || !is_register(o)) return;

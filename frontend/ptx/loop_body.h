@@ -40,6 +40,8 @@ class LoopBody {
   const DraftBlock& block() const { return draft_.blocks[at_]; }
   bool is_wide(VirtualRegister r) const { return program_.registers[r] == RegisterClass::B64; }
   std::optional<int64_t> step_of(const VirtualInst& inst) const;
+  // Returns the move of a constant to a register of any width.
+  VirtualInst constant_move(VirtualRegister to, uint64_t value, const isa::Line& line) const;
   void find_kept();
   VirtualOperand now(const VirtualOperand& o) const;
   bool take_from_first(VirtualInst& inst, int64_t turn, size_t i) const;
