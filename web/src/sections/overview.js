@@ -83,11 +83,14 @@ function changesOf({ overrides, crop }) {
   return sentences.join(" ");
 }
 
+// Ends a text with a full stop. The note of a program is its input, which has none.
+const sentence = (text) => (!text || /[.!?]$/.test(text) ? text : `${text}.`);
+
 function single(run) {
   const { facts } = run;
   const picture = pictureOf(run);
   const numbers = numbersOf([run]).map((one) => h("div", { class: "number" }, h("dt", {}, one.name), h("dd", { "data-stat": one.stat, "data-value": one.value(run) }, one.text(one.value(run))), h("dd", { class: "sub" }, run.isSampled ? `95 %: ${one.sub(run)}` : one.sub(run))));
-  const details = [run.isSampled ? "These are estimates of the whole run, with their 95 % intervals." : "", facts.scene.note, changesOf(facts), facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
+  const details = [run.isSampled ? "These are estimates of the whole run, with their 95 % intervals." : "", sentence(facts.scene.note), changesOf(facts), facts.residency ? `${facts.residency.warps} warps fit a core, limited by ${facts.residency.limit}.` : ""].filter(Boolean).join(" ");
   return [
     h("header", { class: "hero" }, h("p", { class: "kicker" }, "Glint report"), h("h1", {}, run.workload), h("p", { class: "about" }, about(run))),
     h("div", { class: picture ? "key with-picture" : "key" }, picture, h("dl", { class: "numbers" }, numbers)),
