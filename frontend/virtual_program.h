@@ -21,11 +21,13 @@ struct VirtualOperand {
   VirtualRegister reg = kNoRegister;
   uint64_t constant = 0;  // 32 or 64 bits, by the op's operand kind
   isa::Special special = isa::Special::LaneId;
+  // A source of one word may name a register of two; this says which of them it reads.
+  bool is_high = false;
 
-  static VirtualOperand of(VirtualRegister r) { return {Kind::Register, r, 0, {}}; }
-  static VirtualOperand value(uint64_t bits) { return {Kind::Constant, kNoRegister, bits, {}}; }
-  static VirtualOperand of(isa::Special s) { return {Kind::Special, kNoRegister, 0, s}; }
-  static VirtualOperand stack_pointer() { return {Kind::StackPointer, kNoRegister, 0, {}}; }
+  static VirtualOperand of(VirtualRegister r) { return {Kind::Register, r, 0, {}, false}; }
+  static VirtualOperand value(uint64_t bits) { return {Kind::Constant, kNoRegister, bits, {}, false}; }
+  static VirtualOperand of(isa::Special s) { return {Kind::Special, kNoRegister, 0, s, false}; }
+  static VirtualOperand stack_pointer() { return {Kind::StackPointer, kNoRegister, 0, {}, false}; }
 };
 
 using BlockId = uint32_t;

@@ -51,12 +51,14 @@ constexpr OpTime kTimes[] = {
     {"add.u64", 4, 1, Unit::Int, false, 2},
     {"sub.s64", 4, 1, Unit::Int, false, 2},
     {"sub.u64", 4, 1, Unit::Int, false, 2},
+    {"add.wide.*", 4, 1, Unit::Int, false, 2},  // guess: as a sum of 64 bits
     {"and.b64", 4, 4, Unit::Int, false, 2},
     {"or.b64", 4, 4, Unit::Int, false, 2},
     {"xor.b64", 4, 4, Unit::Int, false, 2},
     {"not.b64", 4, 4, Unit::Int, false, 2},
     {"selp.b64", 4, 4, Unit::Int, false, 2},
     {"shl.b64", 6, 2, Unit::Int, false, 2},
+    {"rotl.b64", 6, 2, Unit::Int, false, 2},    // guess: as a shift
     {"shladd.u64", 6, 2, Unit::Int, false, 2},  // guess: as a shift
     {"shr.*64", 5, 4, Unit::Int, false, 2},
     {"setp.*.f64", 8, 4.8125},

@@ -7,6 +7,7 @@
 #include "frontend/backend/live_words.h"
 #include "frontend/backend/peephole.h"
 #include "frontend/backend/schedule.h"
+#include "frontend/backend/word_halves.h"
 #include "frontend/compile.h"
 #include "frontend/pass_times.h"
 
@@ -20,7 +21,10 @@ isa::Program assemble(VirtualProgram program, const BackendOptions& options, Pas
   };
   pass("simplify-code", [&] { simplify_code(program, ops); });
   pass("convert-selections", [&] { convert_selections(program, ops, options.like_an_assembler); });
-  if (options.like_an_assembler) pass("guard-results", [&] { guard_selected_results(program, ops); });
+  if (options.like_an_assembler) {
+    pass("guard-results", [&] { guard_selected_results(program, ops); });
+    pass("read-halves", [&] { read_halves(program, ops); });
+  }
   pass("keep-predicates", [&] { keep_predicates_across_calls(program, ops); });
   if (options.schedule)
     pass("schedule",

@@ -86,7 +86,7 @@ class Encoder {
         if (c == RegisterClass::Predicate) return slot;
         const uint32_t registers = slot + (c == RegisterClass::B64 ? 2u : 1u);
         out_.num_registers = std::max(out_.num_registers, registers);
-        return isa::Slot(isa::kRegisterBank + slot);
+        return isa::Slot(isa::kRegisterBank + slot + (operand.is_high ? 1 : 0));
       }
       case VirtualOperand::Kind::Constant:
         return kind == isa::OperandKind::Src64 || kind == isa::OperandKind::Address64

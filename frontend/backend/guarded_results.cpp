@@ -50,10 +50,17 @@ class Guarding {
       if (!source || !is_register(other)) continue;
       const bool is_result = other.reg == result.reg;
       // The move that comes before the instruction must not write what the instruction reads.
-      if (!is_result &&
-          (!registers_.definition(other) || !registers_.is_used_once(other) || reads(*source, result.reg)))
+      // The instruction may read the other side, too: it then reads the result, which holds the same.
+      const uint32_t reads_of_other = is_register(other) && reads(*source, other.reg) ? 1 : 0;
+      if (!is_result && (!registers_.definition(other) || registers_.uses[other.reg] != 1 + reads_of_other ||
+                         reads(*source, result.reg)))
         continue;
       VirtualInst moved = *source;
+      if (!is_result && reads_of_other != 0)
+        for_each_slot(row_of(moved), [&](size_t slot, isa::OperandKind kind) {
+          VirtualOperand& o = moved.operands[slot];
+          if (!isa::is_destination(kind) && is_register(o) && o.reg == other.reg) o.reg = result.reg;
+        });
       gone_[size_t(source - block_->code.data())] = true;
       moved.operands[0] = result;
       moved.guard = condition.reg;

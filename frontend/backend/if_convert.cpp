@@ -17,14 +17,15 @@ namespace {
 
 // Limits the instructions of a selection's arms: of one, of one with a load from global memory, and of both.
 // `slow_paths` says whether an arm may have an op with a slow path.
+// `inside_others` says whether selections that meet where one around them does get guards, too.
 struct Longest {
   size_t single, loading, two;
-  bool slow_paths;
+  bool slow_paths, inside_others;
 };
-constexpr Longest kLongest{4, 4, 6, true};
+constexpr Longest kLongest{4, 4, 6, true, false};
 // Source: selections of fused multiply-adds, loads and stores, which one lane or all may take, through the
 // assembler of CUDA 13.0 for sm_90. These are the longest that got guards, where lanes may differ.
-constexpr Longest kLongestOfAssembler{8, 20, 14, false};
+constexpr Longest kLongestOfAssembler{8, 20, 14, false, true};
 
 using Instructions = std::vector<VirtualInst>;
 
@@ -49,7 +50,7 @@ class Converter {
     // The blocks are visited from the back: inner selections come later in the layout and are converted
     // before the selection around them.
     for (BlockId b = BlockId(program_.blocks.size()); b-- > 0;)
-      while (convert(b)) {
+      while (convert(b) || (longest_.inside_others && convert_inside(b))) {
       }
   }
 
@@ -65,8 +66,8 @@ class Converter {
     return is_real(inst) && inst.op == ops_.bra && !is_guarded(inst);
   }
 
-  // Finds the selection that ends the block. Returns false when there is none.
-  bool find(BlockId head, Selection& out) const {
+  // Finds the guarded branch that ends the block. Returns false when there is none.
+  bool find_branch(BlockId head, Selection& out) const {
     const Instructions& code = program_.blocks[head].code;
     size_t end = code.size();
     out.other = head + 1;
@@ -76,6 +77,12 @@ class Converter {
     out.taken = code[out.branch].target;
     out.condition = code[out.branch].guard;
     out.negate = code[out.branch].guard_negate;
+    return out.condition != kNoRegister;
+  }
+  // Finds the selection that ends the block. Returns false when there is none.
+  bool find(BlockId head, Selection& out) const {
+    if (!find_branch(head, out)) return false;
+    const Instructions& code = program_.blocks[head].code;
     for (out.ssy = out.branch; out.ssy-- > 0;)
       if (!is_movable(code[out.ssy])) break;
     if (out.ssy >= out.branch || !is_real(code[out.ssy]) || code[out.ssy].op != ops_.ssy ||
@@ -158,12 +165,49 @@ class Converter {
       if (from != head && from != s.taken && from != s.other) return false;
     Instructions taken, other;
     if (!arm(s.taken, head, s, taken) || !arm(s.other, head, s, other)) return false;
+    if (!are_short(taken, other)) return false;
+    rewrite(head, s, std::move(taken), std::move(other));
+    return true;
+  }
+  bool are_short(const Instructions& taken, const Instructions& other) const {
     const bool has_two = !taken.empty() && !other.empty();
     const bool loads = std::any_of(taken.begin(), taken.end(), loads_from_global) ||
                        std::any_of(other.begin(), other.end(), loads_from_global);
-    const size_t most = has_two ? longest_.two : loads ? longest_.loading : longest_.single;
-    if (taken.size() + other.size() > most) return false;
-    rewrite(head, s, std::move(taken), std::move(other));
+    return taken.size() + other.size() <= (has_two ? longest_.two
+                                           : loads ? longest_.loading
+                                                   : longest_.single);
+  }
+
+  // Guards both arms of a selection that has no region of its own: its lanes meet where those of a selection
+  // around it meet, and the block still ends in a branch to that place.
+  bool convert_inside(BlockId head) {
+    Selection s;
+    if (!find_branch(head, s) || program_.blocks[s.taken].successors.size() != 1) return false;
+    s.merge = program_.blocks[s.taken].successors.front();
+    Instructions taken, other;
+    if (s.merge == head || s.merge == s.taken || s.merge == s.other || s.taken == s.other) return false;
+    if (!arm(s.taken, head, s, taken) || !arm(s.other, head, s, other) || !are_short(taken, other))
+      return false;
+    VirtualBlock& block = program_.blocks[head];
+    for (BlockId gone : {s.taken, s.other}) mention(program_.blocks[gone].code, -1);
+    mention(std::span(block.code).subspan(s.branch), -1);
+    VirtualInst leave = make_inst(ops_.bra, {}, block.code[s.branch].line);
+    leave.target = s.merge;
+    Instructions selected = select_moves(taken, other, s);
+    block.code.resize(s.branch);
+    append(block.code, taken, s.condition, s.negate);
+    append(block.code, other, s.condition, !s.negate);
+    block.code.insert(block.code.end(), selected.begin(), selected.end());
+    block.code.push_back(std::move(leave));
+    mention(std::span(block.code).subspan(s.branch), 1);
+    block.successors = {s.merge};
+    std::erase_if(predecessors_[s.merge], [&](BlockId b) { return b == s.taken || b == s.other; });
+    predecessors_[s.merge].push_back(head);
+    for (BlockId gone : {s.taken, s.other}) {
+      program_.blocks[gone].code.clear();
+      program_.blocks[gone].successors.clear();
+      predecessors_[gone].clear();
+    }
     return true;
   }
 

@@ -11,8 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "frontend/backend/def_use.h"
-#include "frontend/backend/unchanged.h"
+#include "frontend/ptx/rewriter.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -30,9 +29,9 @@ bool is_same(const VirtualOperand& a, const VirtualOperand& b) {
   return is_register(a) ? a.reg == b.reg : is_constant(a) && uint32_t(a.constant) == uint32_t(b.constant);
 }
 
-class Fusion {
+class Fusion : Rewriter {
  public:
-  explicit Fusion(VirtualProgram& program) : program_(program), registers_(program) {}
+  explicit Fusion(VirtualProgram& program) : Rewriter(program) {}
 
   void run() {
     for (VirtualBlock& block : program_.blocks) {
@@ -41,41 +40,17 @@ class Fusion {
         if (!is_real(inst)) continue;
         drop_result(inst);
         if (is_guarded(inst)) continue;
-        if (!fuse_sum(inst) && !fuse_bound(inst) && !fuse_logic(inst) && !fuse_high_word(inst))
+        if (!fuse_sum(inst) && !fuse_bound(inst) && !fuse_order(inst) && !fuse_logic(inst) &&
+            !fuse_high_word(inst))
           if (!fuse_extension(inst) && !fuse_stride(inst) && !fuse_wide_sum(inst)) fuse_conversion(inst);
       }
     }
   }
 
  private:
-  // Returns the definition of an operand that only `user` reads, and whose sources hold the same values
-  // there.
-  VirtualInst* feeder(const VirtualOperand& o, const VirtualInst& user) const {
-    VirtualInst* source = registers_.definition(o);
-    if (!source || !registers_.is_used_once(o) || !is_real(*source)) return nullptr;
-    for (size_t k = 1; k < source->operands.size(); ++k)
-      if (!is_unchanged(registers_, *block_, source->operands[k], *source, user)) return nullptr;
-    return source;
-  }
-  static bool is_word(const VirtualOperand& o) { return is_register(o) || is_constant(o); }
   static bool are_words(std::initializer_list<VirtualOperand> all) {
     const auto constants = std::count_if(all.begin(), all.end(), is_constant);
     return constants <= 1 && std::all_of(all.begin(), all.end(), is_word);
-  }
-
-  void become(VirtualInst& inst, uint16_t op, std::vector<VirtualOperand> sources) {
-    for_each_use(inst, [&](VirtualRegister r) { --registers_.uses[r]; });
-    inst.op = op;
-    inst.operands.resize(1);
-    inst.operands.insert(inst.operands.end(), sources.begin(), sources.end());
-    for_each_use(inst, [&](VirtualRegister r) { ++registers_.uses[r]; });
-  }
-  // As become(), where nothing but `inst` read the result of `source`. The counts then know that its sources
-  // have one reader less, as if it were gone.
-  void absorb(VirtualInst& inst, uint16_t op, std::vector<VirtualOperand> sources,
-              const VirtualInst& source) {
-    for_each_use(source, [&](VirtualRegister r) { --registers_.uses[r]; });
-    become(inst, op, std::move(sources));
   }
 
   bool is_add(const VirtualInst& inst) const { return inst.op == ops_.add_u32 || inst.op == ops_.add_s32; }
@@ -138,6 +113,21 @@ class Fusion {
       const VirtualOperand other = inst.operands[3 - k];
       if (!source || !is_add(*source) || !is_word(other) || !is_word(source->operands[1]) ||
           !is_word(source->operands[2]))
+        continue;
+      absorb(inst, (*row)[1], {source->operands[1], source->operands[2], other}, *source);
+      return true;
+    }
+    return false;
+  }
+  // Takes the least or the largest of three.
+  bool fuse_order(VirtualInst& inst) {
+    const auto row =
+        std::find_if(orders_.begin(), orders_.end(), [&](const auto& b) { return b[0] == inst.op; });
+    if (row == orders_.end()) return false;
+    for (size_t k : {size_t{1}, size_t{2}}) {
+      const VirtualInst* source = feeder(inst.operands[k], inst);
+      const VirtualOperand other = inst.operands[3 - k];
+      if (!source || source->op != inst.op || !are_words({source->operands[1], source->operands[2], other}))
         continue;
       absorb(inst, (*row)[1], {source->operands[1], source->operands[2], other}, *source);
       return true;
@@ -266,12 +256,7 @@ class Fusion {
     registers_.last[word.reg] = &high;
     return true;
   }
-  VirtualOperand new_word() {
-    registers_.definitions.push_back(1);
-    registers_.uses.push_back(0);
-    registers_.last.push_back(nullptr);
-    return VirtualOperand::of(program_.new_register(RegisterClass::B32));
-  }
+  VirtualOperand new_word() { return new_value(RegisterClass::B32); }
 
   // Masks a word before it is extended.
   bool fuse_extension(VirtualInst& inst) {
@@ -355,8 +340,6 @@ class Fusion {
     inst.operands.erase(inst.operands.begin());
   }
 
-  VirtualProgram& program_;
-  const Ops ops_;
   const uint16_t sub_s32_ = isa::op_index("sub.s32");
   const uint16_t shr_u32_ = isa::op_index("shr.u32"), shr_b32_ = isa::op_index("shr.b32"),
                  shr_s32_ = isa::op_index("shr.s32"), shr_u64_ = isa::op_index("shr.u64");
@@ -378,8 +361,12 @@ class Fusion {
       {isa::op_index("min.u32"), isa::op_index("addmin.u32")},
       {isa::op_index("max.u32"), isa::op_index("addmax.u32")},
   }};
-  DefUse registers_;
-  const VirtualBlock* block_ = nullptr;  // the block that the pass is in
+  const std::array<std::array<uint16_t, 2>, 4> orders_{{
+      {isa::op_index("min.s32"), isa::op_index("min3.s32")},
+      {isa::op_index("max.s32"), isa::op_index("max3.s32")},
+      {isa::op_index("min.u32"), isa::op_index("min3.u32")},
+      {isa::op_index("max.u32"), isa::op_index("max3.u32")},
+  }};
 };
 
 }  // namespace

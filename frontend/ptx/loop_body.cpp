@@ -109,8 +109,10 @@ void LoopBody::name_results(VirtualInst& inst, bool last) {
     const auto value = is_register(known.operands[k]) ? values_.find(known.operands[k].reg) : values_.end();
     if (value != values_.end()) known.operands[k] = VirtualOperand::value(value->second);
   }
-  const std::optional<uint64_t> value = starts_.empty() ? std::nullopt : constants_.value_of(known);
-  if (value) inst = constant_move(inst.operands[0].reg, *value, inst.line);
+  const std::optional<uint64_t> found = starts_.empty() ? std::nullopt : constants_.value_of(known);
+  const bool is_known = found.has_value();
+  const uint64_t value = found.value_or(0);
+  if (is_known) inst = constant_move(inst.operands[0].reg, value, inst.line);
   for_each_slot(row_of(inst), [&](size_t slot, isa::OperandKind kind) {
     VirtualOperand& o = inst.operands[slot];
     if (!isa::is_destination(kind) || !is_register(o)) return;
@@ -121,7 +123,7 @@ void LoopBody::name_results(VirtualInst& inst, bool last) {
     const VirtualRegister fresh = program_.new_register(program_.registers[o.reg]);
     names_[o.reg] = fresh;
     o = VirtualOperand::of(fresh);
-    if (value) values_[fresh] = *value;
+    if (is_known) values_[fresh] = value;
   });
 }
 

@@ -35,6 +35,8 @@ class LoopBody {
   void starts_with(VirtualRegister r, uint64_t value, std::vector<VirtualInst>& code);
   // Appends the turn with this number, counted from 0. The last one writes the registers that are kept.
   void copy(int64_t turn, bool last, std::vector<VirtualInst>& code);
+  // Returns the name that the result of the block's instruction `i` has in the turn with the number 0.
+  VirtualOperand first_result(size_t i) const { return first_.at(i); }
 
  private:
   const DraftBlock& block() const { return draft_.blocks[at_]; }

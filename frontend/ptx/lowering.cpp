@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "frontend/backend/liveness.h"
+#include "frontend/ptx/fields.h"
 #include "frontend/ptx/machine.h"
 #include "frontend/ptx/unroll.h"
 
@@ -56,6 +57,7 @@ VirtualProgram KernelLowering::run() {
   if (errors_.has_errors()) return std::move(program_);
   if (options_.contract) contract(draft_, free_, program_);
   if (options_.shape) {
+    expand_fields(draft_, program_);
     unroll_loops(draft_, program_);
     exit_at_branches(draft_);
   }

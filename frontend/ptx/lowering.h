@@ -132,6 +132,7 @@ class KernelLowering {
   void lower_access(const Instruction& inst, const MemoryForm& form);
   void access_parts(const Instruction& inst, MemoryForm form, const std::vector<const Operand*>& parts,
                     const Operand& at);
+  void load_short_parts(const MemoryForm& form, const std::vector<const Operand*>& parts, const Operand& at);
   void access_pairs(const Instruction& inst, const MemoryForm& form, int row,
                     const std::vector<const Operand*>& parts, const Operand& at);
   void access_words(const Instruction& inst, const MemoryForm& form, const Symbol& words, int64_t offset,

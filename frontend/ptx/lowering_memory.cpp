@@ -1,5 +1,6 @@
 // Lowers loads, stores and atomics, and parameters of functions, which are registers.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstddef>
 #include <fmt/format.h>
 
@@ -63,6 +64,9 @@ void KernelLowering::access_parts(const Instruction& inst, MemoryForm form,
   const isa::OpRow& r = isa::op_table()[size_t(row)];
   if (form.type.bits == 64 && parts.size() > 1) return access_pairs(inst, form, row, parts, at);
   const bool load = form.op == "ld";
+  if (options_.shape && load && parts.size() > 1 && form.type.bits < 32 &&
+      (form.type.kind == 'u' || form.type.kind == 's'))
+    return load_short_parts(form, parts, at);
   const OperandKind address_kind = r.operands.kind[load ? 1 : 0];
   const OperandKind value_kind = r.operands.kind[load ? 0 : 1];
   const bool vector = isa::slots_of(value_kind) > 1;
@@ -74,6 +78,37 @@ void KernelLowering::access_parts(const Instruction& inst, MemoryForm form,
                             : source(*part, vector ? OperandKind::Src32 : value_kind, form.type));
   operands.insert(load ? operands.end() : operands.begin(), base);
   emit(row, std::move(operands), imm);
+  finish_moves();
+}
+
+// Loads short numbers as words, and picks each of them out with one instruction, as the hardware's assembler
+// does.
+void KernelLowering::load_short_parts(const MemoryForm& form, const std::vector<const Operand*>& parts,
+                                      const Operand& at) {
+  const uint32_t bytes = form.type.bits / 8;
+  MemoryForm whole = form;
+  const auto all = uint32_t(parts.size()) * bytes;
+  whole.type = {'b', std::min(32u, 8 * all)};
+  whole.type_name = fmt::format("b{}", whole.type.bits);
+  const int row = find_access_row(whole, all / 4 > 1 ? all / 4 : 1);
+  int64_t imm = 0;
+  const isa::OpRow& r = isa::op_table()[size_t(row)];
+  const VirtualOperand base = address(at, r.operands.kind[1] == OperandKind::Address64, imm);
+  std::vector<VirtualOperand> words;
+  for (uint32_t i = 0; i < std::max(all / 4, 1u); ++i)
+    words.push_back(VirtualOperand::of(temporary(RegisterClass::B32)));
+  std::vector<VirtualOperand> operands = words;
+  operands.push_back(base);
+  emit(row, std::move(operands), imm);
+  for (uint32_t i = 0; i < parts.size(); ++i) {
+    // A nibble picks a byte of the word, of a second word of zeros (4), or copies of a byte's sign (8 more).
+    const uint32_t first = i * bytes % 4, last = first + bytes - 1;
+    const uint32_t fill = form.type.kind == 's' ? 8 | last : 4;
+    const uint32_t pick = first | (bytes == 2 ? last : fill) << 4 | fill << 8 | fill << 12;
+    emit(isa::op_index("prmt.b32"),
+         {destination(*parts[i], OperandKind::Dst32, form.type), words[i * bytes / 4],
+          VirtualOperand::value(0), VirtualOperand::value(pick)});
+  }
   finish_moves();
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "frontend/backend/def_use.h"
@@ -13,6 +14,9 @@
 #include "frontend/backend/unchanged.h"
 #include "frontend/ptx/aggregation.h"
 #include "frontend/ptx/fusion.h"
+#include "frontend/ptx/logic_tests.h"
+#include "frontend/ptx/narrowing.h"
+#include "frontend/ptx/negation.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -67,6 +71,7 @@ class Shaping {
       const size_t type = name.rfind('.');
       if (!name.starts_with("setp.")) continue;
       const int row = isa::find_op(name.substr(0, type) + combined + name.substr(type));
+      if (k == 2 && tests_logic(*setp) && is_plain_test(other)) continue;
       if (row < 0 || !is_unchanged(registers_, block, setp->operands[1], *setp, inst) ||
           !is_unchanged(registers_, block, setp->operands[2], *setp, inst))
         continue;
@@ -75,6 +80,24 @@ class Shaping {
                        setp->operands[2], other};
       return;
     }
+  }
+
+  // Returns true for a comparison that becomes one instruction with the logic that it tests
+  // (logic_tests.h).
+  bool tests_logic(const VirtualInst& setp) const {
+    const std::string_view name = row_of(setp).name;
+    if ((!name.starts_with("setp.eq.") && !name.starts_with("setp.ne.")) || !name.ends_with("32"))
+      return false;
+    const VirtualInst* source = definition(setp.operands[1]);
+    if (!source || !is_constant(setp.operands[2]) || setp.operands[2].constant != 0) return false;
+    const std::string_view of = row_of(*source).name;
+    return of == "and.b32" || of == "or.b32" || of == "xor.b32" || of == "lop3.b32";
+  }
+  // Returns true for the result of another comparison that may be combined.
+  bool is_plain_test(const VirtualOperand& o) const {
+    const VirtualInst* setp = definition(o);
+    return setp && registers_.uses[o.reg] == 1 && setp->operands.size() == 3 &&
+           row_of(*setp).name.starts_with("setp.") && !tests_logic(*setp);
   }
 
   VirtualRegister new_predicate() {
@@ -224,76 +247,15 @@ void exit_at_branches(Draft& draft) {
   }
 }
 
-namespace {
-
-// Returns whether a backward branch, in layout order, makes a loop around `inside` but not around `outside`.
-bool is_out_of_loop(const VirtualProgram& program, BlockId outside, BlockId inside) {
-  for (BlockId last = inside; last < program.blocks.size(); ++last)
-    for (BlockId first : program.blocks[last].successors)
-      if (first <= inside && (outside < first || outside > last)) return true;
-  return false;
-}
-
-// Replaces -(a * b) by (-a) * b, which gives the same bits.
-void negate_factors(VirtualProgram& program) {
-  const uint16_t neg = isa::op_index("neg.f32"), mul = isa::op_index("mul.rn.f32");
-  struct Home {
-    uint32_t definitions = 0, uses = 0;
-    BlockId block = kNoBlock;
-    const VirtualInst* inst = nullptr;
-  };
-  std::vector<Home> homes(program.registers.size());
-  for (BlockId b = 0; b < program.blocks.size(); ++b)
-    for (const VirtualInst& inst : program.blocks[b].code) {
-      for_each_def(inst, [&](VirtualRegister r) {
-        homes[r] = {homes[r].definitions + (is_guarded(inst) ? 2 : 1), homes[r].uses, b, &inst};
-      });
-      for_each_use(inst, [&](VirtualRegister r) { ++homes[r].uses; });
-    }
-  const auto is_stable = [&](const VirtualOperand& o) {
-    return is_constant(o) || (is_register(o) && homes[o.reg].definitions == 1);
-  };
-  std::map<VirtualRegister, VirtualRegister> negated;
-  for (BlockId b = 0; b < program.blocks.size(); ++b)
-    for (VirtualInst& inst : program.blocks[b].code) {
-      if (!is_real(inst) || inst.op != neg || is_guarded(inst) || !is_stable(inst.operands[1]) ||
-          !is_register(inst.operands[1]))
-        continue;
-      const Home& product = homes[inst.operands[1].reg];
-      if (product.uses != 1 || !is_real(*product.inst) || product.inst->op != mul) continue;
-      const std::vector<VirtualOperand> factors(product.inst->operands.begin() + 1,
-                                                product.inst->operands.end());
-      if (!is_stable(factors[0]) || !is_stable(factors[1])) continue;
-      for (size_t k : {size_t{0}, size_t{1}}) {
-        if (!is_register(factors[k]) || !is_out_of_loop(program, homes[factors[k].reg].block, b)) continue;
-        const auto [found, is_new] = negated.try_emplace(factors[k].reg, kNoRegister);
-        if (is_new) found->second = program.new_register(RegisterClass::B32);
-        inst.op = mul;
-        inst.operands = {inst.operands[0], VirtualOperand::of(found->second), factors[1 - k]};
-        break;
-      }
-    }
-  for (VirtualBlock& block : program.blocks)
-    for (size_t i = 0; i < block.code.size(); ++i) {
-      std::vector<VirtualInst> behind;
-      for_each_def(block.code[i], [&](VirtualRegister r) {
-        if (const auto found = negated.find(r); found != negated.end())
-          behind.push_back(
-              make_inst(neg, {VirtualOperand::of(found->second), VirtualOperand::of(r)}, block.code[i].line));
-      });
-      block.code.insert(block.code.begin() + std::ptrdiff_t(i) + 1, behind.begin(), behind.end());
-      i += behind.size();
-    }
-}
-
-}  // namespace
-
 void shape_for_machine(VirtualProgram& program) {
-  negate_factors(program);
+  narrow_words(program);
   Shaping(program).spread_products();
   Shaping(program).run();
   simplify_code(program, Ops());
+  fold_negations(program);
   fuse_words(program);
+  narrow_pairs(program);
+  test_logic(program);
   aggregate_atomics(program);
 }
 

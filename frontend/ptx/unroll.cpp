@@ -11,8 +11,9 @@
 #include <utility>
 
 #include "frontend/backend/slow_paths.h"
-#include "frontend/ptx/constant_words.h"
+#include "frontend/ptx/early_exits.h"
 #include "frontend/ptx/loop_body.h"
+#include "frontend/ptx/loop_counter.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -27,7 +28,7 @@ constexpr int64_t kTurns = 4;  // turns unrolled at a time; of the rest, two at 
 constexpr size_t kMostWithoutLoads = 18, kMoreForSharedLoad = 5, kMoreForLoad = 26, kMostOfUnknown = 44;
 constexpr size_t kMostOfKnown = 64;  // where the number of turns is constant, but too large for one run
 constexpr size_t kMostWithBarrier = 64;
-constexpr int64_t kMostTurns = 256, kMostWhole = 1024;
+constexpr int64_t kMostWhole = 1024;
 // Returns the largest number of instructions that all turns of a loop together may have to become one run.
 constexpr double most_of_whole(int64_t turns) {
   constexpr double kLeast = 384, kMoreForTurn = 13.2;
@@ -38,7 +39,11 @@ constexpr double most_of_whole(int64_t turns) {
 class CountedLoop {
  public:
   CountedLoop(Draft& draft, VirtualProgram& program, BlockId at)
-      : draft_(draft), program_(program), at_(at), body_(draft, program, at) {}
+      : draft_(draft),
+        program_(program),
+        at_(at),
+        body_(draft, program, at),
+        count_(draft, program, body_, at) {}
 
   bool run() {
     const DraftBlock& block = draft_.blocks[at_];
@@ -48,13 +53,18 @@ class CountedLoop {
     const auto all = [&](bool (*holds)(const VirtualInst&)) {
       return std::all_of(block.code.begin(), block.code.end(), holds);
     };
-    if (!all(can_be_copied) || !find_test(block)) return false;
+    if (!all(can_be_copied)) return false;
+    if (block.code.back().op == and_pred_)
+      return all(is_no_barrier) && unroll_with_exits(draft_, program_, at_, body_, count_);
+    if (!count_.find(block.code.back()) || block.code.back().operands[0].reg != block.condition) return false;
+    test_ = is_wide() ? &tests_of_pairs_ : &tests_of_words_;
     // A load of one value counts twice, and one of a vector once.
     const bool waits = !all(is_no_barrier);
-    const size_t size = size_t(std::count_if(block.code.begin(), block.code.end() - 1,
-                                             [&](const VirtualInst& inst) { return !vanishes(inst); })) +
-                        (waits ? 0 : loads(isa::Space::Global, true) + loads(isa::Space::Shared, true));
-    const std::optional<int64_t> turns = known_turns(block);
+    const size_t size =
+        size_t(std::count_if(block.code.begin(), block.code.end() - 1,
+                             [&](const VirtualInst& inst) { return !count_.vanishes(inst); })) +
+        (waits ? 0 : loads(isa::Space::Global, true) + loads(isa::Space::Shared, true));
+    const std::optional<int64_t> turns = count_.known_turns(block.code.back());
     if (turns && double(*turns * int64_t(size)) < most_of_whole(*turns)) {
       become_whole(*turns);
       return true;
@@ -87,90 +97,18 @@ class CountedLoop {
              (!of_one_value || inst.operands.size() == 2);
     }));
   }
-  // Returns true for a sum of a constant and a register that steps: displacements and constants take its
-  // place.
-  bool vanishes(const VirtualInst& inst) const {
-    if (inst.op != ops_.add_s32 && inst.op != ops_.add_u32 && inst.op != ops_.add_s64 &&
-        inst.op != ops_.add_u64)
-      return false;
-    return is_register(inst.operands[1]) && body_.step(inst.operands[1].reg) && is_constant(inst.operands[2]);
-  }
   size_t most_of_unknown() const {
     return std::min(kMostOfUnknown, kMostWithoutLoads + kMoreForSharedLoad * loads(isa::Space::Shared) +
                                         kMoreForLoad * loads(isa::Space::Global));
   }
 
-  // Finds the counter, which steps by a constant, in the last test.
-  bool find_test(const DraftBlock& block) {
-    const VirtualInst& test = block.code.back();
-    if (body_.keeps(block.condition) || !row_of(test).name.starts_with("setp.") ||
-        test.operands.size() != 3 || test.operands[0].reg != block.condition ||
-        !body_.writes_once(block.condition))
-      return false;
-    const VirtualOperand& value = test.operands[1];
-    if (!is_register(value) || !body_.step(value.reg) || program_.registers[value.reg] != RegisterClass::B32)
-      return false;
-    counter_ = value.reg;
-    end_ = test.operands[2];
-    return is_constant(end_) || (is_register(end_) && !body_.writes(end_.reg));
-  }
-  // Returns true for `setp.ne.s32 p, r, 0` after r was decremented, and for `setp.lt.s32 p, r, bound` after r
-  // was incremented.
+  // Returns true for `setp.ne p, r, 0` after r was decremented, and for a signed `setp.lt p, r, bound` after
+  // r was incremented.
   bool counts_to_end(const VirtualInst& test) {
-    counts_up_ = test.op == setp_lt_s32_;
-    if (counts_up_) return *body_.step(counter_) > 0;
-    return test.op == setp_ne_s32_ && *body_.step(counter_) < 0 && is_constant(end_) && end_.constant == 0;
-  }
-
-  // Returns the constant that the register holds when the loop begins, if one block leads to the loop, and it
-  // or the blocks that alone lead to it set the register.
-  std::optional<uint64_t> start_of(VirtualRegister r) const {
-    BlockId b = at_;
-    for (size_t hops = 0; hops < draft_.blocks.size(); ++hops) {
-      BlockId before = kNoBlock;
-      for (BlockId p = 0; p < draft_.blocks.size(); ++p) {
-        const std::vector<BlockId> next = draft_.blocks[p].successors();
-        if (p == at_ || std::find(next.begin(), next.end(), b) == next.end()) continue;
-        if (before != kNoBlock) return {};
-        before = p;
-      }
-      if (before == kNoBlock) return {};
-      b = before;
-      const std::vector<VirtualInst>& code = draft_.blocks[b].code;
-      for (size_t i = code.size(); i-- > 0;) {
-        bool writes = false;
-        for_each_def(code[i], [&](VirtualRegister written) { writes |= written == r; });
-        if (!writes) continue;
-        return ConstantWords().value_of(code[i]);
-      }
-    }
-    return {};
-  }
-
-  // Returns the number of turns if it is a constant of at most kMostTurns.
-  std::optional<int64_t> known_turns(const DraftBlock& block) const {
-    const std::optional<uint64_t> start = start_of(counter_);
-    if (!start || !is_constant(end_)) return {};
-    const std::string_view test = row_of(block.code.back()).name;
-    const bool is_signed = test.ends_with(".s32");
-    if (!is_signed && !test.ends_with(".u32")) return {};
-    const auto extended = [&](uint64_t x) {
-      return is_signed ? int64_t{int32_t(uint32_t(x))} : int64_t{uint32_t(x)};
-    };
-    const int64_t end = extended(end_.constant);
-    for (int64_t turns = 1; turns <= kMostTurns; ++turns) {
-      const int64_t value = extended(*start + uint64_t(turns * *body_.step(counter_)));
-      const std::string_view relation = test.substr(5, 3);
-      if (relation == "ne."   ? value == end
-          : relation == "eq." ? value != end
-          : relation == "lt." ? value >= end
-          : relation == "le." ? value > end
-          : relation == "gt." ? value <= end
-          : relation == "ge." ? value < end
-                              : false)
-        return turns;
-    }
-    return {};
+    counts_up_ = test.op == test_->lt;
+    if (counts_up_) return *body_.step(count_.counter()) > 0;
+    return test.op == test_->ne && *body_.step(count_.counter()) < 0 && is_constant(count_.end()) &&
+           count_.end().constant == 0;
   }
 
   // Puts all turns in place of the loop. The registers that step are constants where they start as constants.
@@ -178,7 +116,8 @@ class CountedLoop {
     std::vector<VirtualInst> code;
     body_.begin_copies();
     for (VirtualRegister r = 0, end = VirtualRegister(program_.registers.size()); r < end; ++r)
-      if (const auto start = body_.step(r) ? start_of(r) : std::nullopt) body_.starts_with(r, *start, code);
+      if (const auto start = body_.step(r) ? count_.start_of(r) : std::nullopt)
+        body_.starts_with(r, *start, code);
     for (int64_t turn = 0; turn < turns; ++turn) body_.copy(turn, turn + 1 == turns, code);
     DraftBlock& block = draft_.blocks[at_];
     block.code = std::move(code);
@@ -189,7 +128,7 @@ class CountedLoop {
 
   // Returns true when all lanes in the loop are in the same turn and leave the loop together.
   bool lanes_count_together() const {
-    return is_uniform(VirtualOperand::of(counter_), true) && is_uniform(end_, false);
+    return is_uniform(VirtualOperand::of(count_.counter()), true) && is_uniform(count_.end(), false);
   }
   // Returns true when the operand has one value for all lanes: it is a constant, is computed once from such
   // operands, or is the counter and starts with such a value.
@@ -222,7 +161,10 @@ class CountedLoop {
     return uniform;
   }
 
-  static VirtualOperand word(int64_t value) { return VirtualOperand::value(uint64_t(uint32_t(value))); }
+  bool is_wide() const { return count_.is_wide(); }
+  VirtualOperand number(int64_t value) const {
+    return VirtualOperand::value(is_wide() ? uint64_t(value) : uint64_t(uint32_t(value)));
+  }
 
   BlockId add_block(std::vector<VirtualInst> code, BlockId next) {
     DraftBlock block;
@@ -241,26 +183,38 @@ class CountedLoop {
     DraftBlock& block = draft_.blocks[at];
     block.end = DraftBlock::End::Branch;
     block.condition = program_.new_register(RegisterClass::Predicate);
-    const uint16_t op = counts_up_ ? setp_lt_s32_ : turns > 1 ? setp_gt_s32_ : setp_ne_s32_;
+    const uint16_t op = counts_up_ ? test_->lt : turns > 1 ? test_->gt : test_->ne;
     block.code.push_back(make_inst(
-        op, {VirtualOperand::of(block.condition), VirtualOperand::of(counter_), limit(turns)}, block.line));
+        op, {VirtualOperand::of(block.condition), VirtualOperand::of(count_.counter()), limit(turns)},
+        block.line));
     block.negate = negate;
     block.taken = taken;
   }
   // Returns the bound that the counter must not have reached if it is to last for `turns` turns. The
   // subtraction saturates, so that no counter can be below the lowest bound.
   VirtualOperand limit(int64_t turns) {
-    const int64_t way = *body_.step(counter_) * (turns - 1);
-    if (!counts_up_) return word(-way);
-    if (turns == 1) return end_;
-    if (is_constant(end_))
-      return word(std::max<int64_t>(int64_t{int32_t(uint32_t(end_.constant))} - way, INT32_MIN));
+    const int64_t way = *body_.step(count_.counter()) * (turns - 1);
+    if (!counts_up_) return number(-way);
+    if (turns == 1) return count_.end();
+    const int64_t least = is_wide() ? INT64_MIN : INT32_MIN;
+    const auto reduced = [&](int64_t end) { return end < least + way ? least : end - way; };
+    if (is_constant(count_.end()))
+      return number(reduced(is_wide() ? int64_t(count_.end().constant)
+                                      : int64_t{int32_t(uint32_t(count_.end().constant))}));
     const auto [found, is_new] = limits_.try_emplace(turns, kNoRegister);
     if (is_new) {
-      found->second = program_.new_register(RegisterClass::B32);
-      std::vector<VirtualInst>& code = draft_.blocks[first_block_].code;
-      code.insert(code.begin(), make_inst(sub_sat_s32_, {VirtualOperand::of(found->second), end_, word(way)},
-                                          draft_.blocks[at_].line));
+      found->second = program_.new_register(program_.registers[count_.counter()]);
+      const VirtualOperand to = VirtualOperand::of(found->second);
+      const isa::Line& line = draft_.blocks[at_].line;
+      std::vector<VirtualInst> code;
+      if (is_wide()) {
+        code.push_back(make_inst(max_s64_, {to, count_.end(), number(least + way)}, line));
+        code.push_back(make_inst(sub_s64_, {to, to, number(way)}, line));
+      } else {
+        code.push_back(make_inst(sub_sat_s32_, {to, count_.end(), number(way)}, line));
+      }
+      std::vector<VirtualInst>& first = draft_.blocks[first_block_].code;
+      first.insert(first.begin(), code.begin(), code.end());
     }
     return VirtualOperand::of(found->second);
   }
@@ -301,11 +255,20 @@ class CountedLoop {
   VirtualProgram& program_;
   const BlockId at_;
   LoopBody body_;
+  LoopCounter count_;
   const Ops ops_;
-  const uint16_t setp_ne_s32_ = isa::op_index("setp.ne.s32"), setp_gt_s32_ = isa::op_index("setp.gt.s32");
-  const uint16_t setp_lt_s32_ = isa::op_index("setp.lt.s32"), sub_sat_s32_ = isa::op_index("sub.sat.s32");
-  VirtualRegister counter_ = kNoRegister;
-  VirtualOperand end_;  // bound of the counter
+  // Names the tests of a counter.
+  struct Tests {
+    uint16_t ne, gt, lt;
+  };
+  const Tests tests_of_words_ = {isa::op_index("setp.ne.s32"), isa::op_index("setp.gt.s32"),
+                                 isa::op_index("setp.lt.s32")};
+  const Tests tests_of_pairs_ = {isa::op_index("setp.ne.s64"), isa::op_index("setp.gt.s64"),
+                                 isa::op_index("setp.lt.s64")};
+  const uint16_t sub_sat_s32_ = isa::op_index("sub.sat.s32"), sub_s64_ = isa::op_index("sub.s64"),
+                 max_s64_ = isa::op_index("max.s64");
+  const Tests* test_ = &tests_of_words_;
+  const uint16_t and_pred_ = isa::op_index("and.pred");
   bool counts_up_ = false;
   std::map<int64_t, VirtualRegister> limits_;  // by number of turns, if the bound is in a register
   BlockId first_block_ = kNoBlock;             // first of the new blocks

@@ -262,6 +262,23 @@ constexpr auto kRows = joined_rows(
         {{{0xf0, 0xcc, 0xaa, 0x80}, 0x80},
          {{0xf0, 0xcc, 0xaa, 0x96}, 0x96},
          {{0xf0, 0xcc, 0xaa, 0x3c}, 0x3c}}),
+    value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
+        "lop3.eq.b32", Unit::Int, "Computes logic of three words as lop3 does, and gives true where it is 0.",
+        [](uint32_t a, uint32_t b, uint32_t c, uint32_t table) { return looked_up(a, b, c, table) == 0; },
+        {{{0xf0, 0x0f, 0, 0xc0}, 1}, {{0xf0, 0x1f, 0, 0xc0}, 0}}),
+    value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
+        "lop3.ne.b32", Unit::Int,
+        "Computes logic of three words as lop3 does, and gives true where it is not 0.",
+        [](uint32_t a, uint32_t b, uint32_t c, uint32_t table) { return looked_up(a, b, c, table) != 0; },
+        {{{0xf0, 0x0f, 0, 0xc0}, 0}, {{0xf0, 0x1f, 0, 0xc0}, 1}}),
+    value_op<uint32_t, uint32_t, uint32_t, uint32_t>(
+        "lop3.both.b32", Unit::Int,
+        "Computes logic of three words as lop3 does. The predicate is true where it is not 0.",
+        [](uint32_t a, uint32_t b, uint32_t c, uint32_t table) {
+          const uint32_t word = looked_up(a, b, c, table);
+          return Two<uint32_t, bool>{word, word != 0};
+        },
+        {{{0xf0, 0x0f, 0, 0xc0}, 0, 0}, {{0xf0, 0x1f, 0, 0xc0}, 0x10, 1}}),
     value_op<uint32_t, uint32_t, int32_t>(
         "fns.b32", Unit::Sfu,
         "Returns the position of the n-th one from a bit on, upwards or (n < 0) downwards, or all ones if "

@@ -121,3 +121,49 @@ TEST_CASE("words at constant places of shared memory are loaded together") {
       ".shared .align 16 .b8 room[64];\n");
   CHECK(count(code, "ld.shared.v4") == 1);
 }
+
+TEST_CASE("loops that count in 64 bits become copies, too") {
+  const auto down = [](const std::string& start) {
+    return "cvt.u64.u32 %rd1,%lane;" + start +
+           "mov.u32 %r2,1;\nLOOP: mad.lo.u32 %r2,%r2,5,%lane;add.s64 %rd2,%rd2,-1;setp.ne.s64 "
+           "%p1,%rd2,0;@%p1 bra "
+           "LOOP;\nmov.u32 %out,%r2;\n";
+  };
+  CHECK(count(shaped(down("mov.u64 %rd2,9;")), "setp") == 0);
+  CHECK(count(shaped(down("add.s64 %rd2,%rd1,1;")), "setp.gt.s64") == 4);
+  const auto up = [](const std::string& end) {
+    return "cvt.u64.u32 %rd1,%lane;" + end +
+           "mov.u32 %r2,1;mov.u64 %rd2,-3;\nLOOP: mad.lo.u32 %r2,%r2,5,%lane;add.s64 %rd2,%rd2,2;setp.lt.s64 "
+           "%p1,%rd2,%rd3;@%p1 bra LOOP;\nmov.u32 %out,%r2;\n";
+  };
+  for (const std::string end :
+       {"add.s64 %rd3,%rd1,20;", "mov.u64 %rd4,-9223372036854775808;add.s64 %rd3,%rd4,%rd1;"})
+    CHECK(count(shaped(up(end)), "setp.lt.s64") > 1);
+}
+
+TEST_CASE("a loop with a known number of turns that data may end is one run of turns with branches out") {
+  const auto looking = [](int turns) {
+    return fmt::format(
+        "mov.u32 %r1,0;mul.lo.u32 %r2,%lane,40503;mov.u32 %r4,3;\nLOOP: mad.lo.u32 "
+        "%r2,%r2,25173,13849;and.b32 "
+        "%r3,%r2,248;setp.ne.s32 %p1,%r3,0;add.s32 %r4,%r4,7;add.s32 %r1,%r1,1;setp.lt.u32 "
+        "%p2,%r1,{};and.pred "
+        "%p3,%p1,%p2;@%p3 bra LOOP;\nmad.lo.u32 %out,%r2,31,%r1;add.u32 %out,%out,%r4;\n",
+        turns);
+  };
+  const std::string code = shaped(looking(20));
+  CHECK(count(code, "setp.lt.u32") == 0);
+  CHECK(count(code, "bra") == 19);
+  CHECK(count(shaped(looking(900)), "setp.lt") == 1);
+}
+
+TEST_CASE("a selection that meets where another one does gets guards") {
+  const std::string code = shaped(
+      "and.b32 %r1,%lane,3;mov.u32 %r2,7;setp.eq.s32 %p1,%r1,0;@%p1 bra ZERO;\nsetp.eq.s32 %p2,%r1,1;@%p2 "
+      "bra "
+      "ONE;\nsetp.ne.s32 %p3,%r1,2;@%p3 bra MORE;\nadd.s32 %r2,%r2,1;bra.uni END;\nONE: add.s32 "
+      "%r2,%r2,-4;bra.uni "
+      "END;\nZERO: mul.lo.s32 %r2,%r2,3;bra.uni END;\nMORE: xor.b32 %r2,%r2,60;\nEND: add.u32 "
+      "%out,%r2,%lane;\n");
+  CHECK(count(code, "@%p0 xor.b32") + count(code, "@!%p0 xor.b32") == 1);
+}
