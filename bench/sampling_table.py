@@ -68,6 +68,7 @@ def measure(glint, workload, options, seeds, settings):
     rows = []
     frame = ["--size", options.size, "--spp", str(options.spp)]
     sample, common, share, program = "--sample-pixels", [*frame, *settings], options.share, workload
+    by = [] if options.launches else ["--sample-by", options.by]
     if options.launches:
         program, _, own = workload.partition(":")
         program, _, small = program.partition("/")
@@ -81,7 +82,7 @@ def measure(glint, workload, options, seeds, settings):
         long = long[options.launches]
         truth = truth_of(whole)
         for seed in seeds:
-            sums, *short = run(glint, program, scratch / f"sample{seed}", [*common, sample, share, "--sample-seed", str(seed)])
+            sums, *short = run(glint, program, scratch / f"sample{seed}", [*common, sample, share, *by, "--sample-seed", str(seed)])
             for name in NAMES:
                 if (value := sums.get(f"gpu.sample.{name}")) is None or name not in truth:
                     continue
@@ -115,7 +116,7 @@ def print_tables(rows):
               f"{sum(row[5] <= row[3] <= row[6] for row in mine)} of {len(mine)} | "
               f"{100 * statistics.mean(row[8] for row in mine) / mine[0][7]:.1f} % |")
     shares = [row[8] / row[7] for row in rows if row[2] == "cycles"]
-    print(f"\nA sample takes {100 * statistics.median(shares):.1f} % of the whole run's time (median), and all samples "
+    print(f"\nA sample takes {100 * statistics.mean(shares):.1f} % of the whole run's time (mean), and all samples "
           f"{100 * sum(row[8] for row in rows) / sum(row[7] for row in rows):.1f} %.")
 
 
@@ -127,6 +128,7 @@ def main():
     parser.add_argument("--size", default="512x512")
     parser.add_argument("--spp", type=int, default=1, help="samples of a pixel")
     parser.add_argument("--share", default="5%")
+    parser.add_argument("--by", default="position", help="how blocks are chosen, as --sample-by names it")
     parser.add_argument("--launches", action="store_true", help="sample launches, and not the pixels of one")
     parser.add_argument("--seeds", type=int, default=3, help="number of samples of each workload")
     parser.add_argument("--first-seed", type=int, default=1)

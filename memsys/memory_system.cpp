@@ -43,9 +43,16 @@ MemoryContents MemorySystem::take_contents() {
   return out;
 }
 
-void MemorySystem::warm(Address line, uint8_t sectors) {
+uint32_t MemorySystem::warm(Address line, uint8_t sectors, Touch touch) {
   const uint32_t slice = map_.slice(line);
-  partitions_[map_.partition_of(slice)]->warm(slice, line, sectors);
+  return partitions_[map_.partition_of(slice)]->warm(slice, line, sectors, touch);
+}
+
+uint64_t MemorySystem::dirty_sectors() const {
+  uint64_t sum = 0;
+  for (const auto& partition : partitions_)
+    sum += partition->sum([](const L2Slice& slice) { return slice.dirty_sectors(); });
+  return sum;
 }
 
 void MemorySystem::put_contents(MemoryContents&& contents) {

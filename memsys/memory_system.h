@@ -46,9 +46,12 @@ class MemorySystem {
   // next launch before it begins. Both have the same parameters.
   MemoryContents take_contents();
   void put_contents(MemoryContents&& contents);
-  // Lets the L2 hold sectors of a line (a physical, line-aligned address) as if they had just been read. It
-  // takes no time and counts nothing. Model: what makes way is not written back.
-  void warm(Address line, uint8_t sectors);
+  // Lets the L2 hold sectors of a line (a physical, line-aligned address) as if they had just been read or
+  // written. It takes no time and counts nothing. Model: what makes way is not written back. Returns how many
+  // sectors were lost so: those that DRAM had not got yet.
+  uint32_t warm(Address line, uint8_t sectors, Touch touch = Touch::Read);
+  // Returns the number of sectors that the L2 holds and DRAM has not got yet.
+  uint64_t dirty_sectors() const;
 
   // Counts the cycles up to the end of the run under their reasons. It is called once, before statistics are
   // read.

@@ -23,6 +23,8 @@ struct Session {
   bool can_move_cursor = false;  // The terminal knows escape sequences.
   int progress_descriptor = -1;  // where a process that started this one listens; -1: nowhere
   std::function<Exit()> action;  // The subcommand that was chosen sets it.
+  // `run` sets it, too: it throws UserError when the action would refuse how options go together.
+  std::function<void()> check{};
 };
 
 // Each function adds its subcommand, whose callback sets Session::action.

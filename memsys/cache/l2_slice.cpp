@@ -107,11 +107,24 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
   });
 }
 
-void L2Slice::warm(Address line, uint8_t sectors) {
+uint32_t L2Slice::warm(Address line, uint8_t sectors, Touch touch) {
   const uint32_t slot = tags_.find(line);
-  if (slot != kNone) tags_.touch(slot);
-  (slot == kNone ? tags_.insert(line) : tags_.line(slot)).valid |= sectors;
+  uint32_t lost = 0;
+  if (slot != kNone)
+    tags_.touch(slot);
+  else
+    lost = num_sectors(tags_.victim(line).dirty);
+  TagArray::Line& held = slot == kNone ? tags_.insert(line) : tags_.line(slot);
+  held.valid |= sectors;
+  if (touch == Touch::Write) held.dirty |= sectors;
   seen_.insert_if_new(line);
+  return lost;
+}
+
+uint64_t L2Slice::dirty_sectors() const {
+  uint64_t sum = 0;
+  for (uint32_t slot = 0; slot < tags_.num_lines(); ++slot) sum += num_sectors(tags_.line(slot).dirty);
+  return sum;
 }
 
 void L2Slice::serve(Cycle now) {

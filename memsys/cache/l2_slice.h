@@ -52,6 +52,9 @@ struct L2Stats : CacheStats {
                                    "Number of sectors written in part whose other bytes came from DRAM."};
 };
 
+// Says what leaves a line in a cache that takes no time.
+enum class Touch : uint8_t { Read, Write };
+
 // Describes a request on its way from a slice to the DRAM scheduler.
 struct ToDram {
   Cycle ready = 0;
@@ -99,7 +102,8 @@ class L2Slice {
     tags_ = std::move(contents.tags), words_ = std::move(contents.words), seen_ = std::move(contents.seen);
   }
 
-  void warm(Address line, uint8_t sectors);  // MemorySystem::warm()
+  uint32_t warm(Address line, uint8_t sectors, Touch touch);  // MemorySystem::warm()
+  uint64_t dirty_sectors() const;  // number of sectors that it holds and DRAM has not got yet
 
   Ring<ToDram>& to_dram() { return to_dram_; }
   const Ring<ToDram>& to_dram() const { return to_dram_; }

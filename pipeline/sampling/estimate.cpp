@@ -27,6 +27,10 @@ constexpr double kNormal = 1.96;  // of the method's error, which was measured o
 
 }  // namespace
 
+std::string_view name_of(Quantity which) {
+  return kDescribed[size_t(which)].name;
+}
+
 Estimate make_estimate(Quantity which, Uncertain value, double student, double error) {
   const Described& described = kDescribed[size_t(which)];
   const double half = std::hypot(student * std::sqrt(value.variance), kNormal * error);
@@ -37,6 +41,25 @@ Estimate make_estimate(Quantity which, Uncertain value, double student, double e
           value.value,
           std::max(0.0, value.value - half),
           std::min(most, value.value + half)};
+}
+
+std::vector<Estimate> make_estimates(const RunSums& sums, double student, const MethodError& error) {
+  std::vector<Estimate> out;
+  const auto add = [&](Quantity which, Uncertain value, double own) {
+    out.push_back(make_estimate(which, value, student, own));
+  };
+  const auto relative = [](Uncertain value) {
+    return value.variance / std::max(1.0, value.value * value.value);
+  };
+  add(Quantity::Cycles, sums.cycles, error.cycles * sums.cycles.value);
+  const double ipc = sums.instructions.value / sums.cycles.value;
+  add(Quantity::Ipc, {ipc, ipc * ipc * (relative(sums.cycles) + relative(sums.instructions))},
+      error.cycles * ipc);
+  add(Quantity::Instructions, sums.instructions, 0);
+  if (sums.nodes.value > 0) add(Quantity::Nodes, sums.nodes, 0);
+  for (size_t i = 0; i < kFractions.size(); ++i)
+    if (sums.fractions[i]) add(kFractions[i].which, *sums.fractions[i], error.*kFractions[i].error);
+  return out;
 }
 
 SampleStats::SampleStats(stats::Group* parent, std::vector<Estimate> estimates)

@@ -39,18 +39,11 @@ class LaunchEstimator {
   Uncertain sum(const Part& of) const;
   // Returns a quotient of such sums, whose scatter is that of its linear part.
   Uncertain quotient(BatchCount above, BatchCount below) const;
-  void add(Quantity which, Uncertain value, double error) {
-    out_.push_back(make_estimate(which, value, student_, error));
-  }
-  void add_fraction(Quantity which, BatchCount above, BatchCount below, double error) {
-    if (sum(part(below)).value > 0) add(which, quotient(above, below), error);
-  }
 
   const std::span<const TimedLaunch> timed_;
   const LaunchTotals totals_;
   std::map<uint32_t, std::vector<const TimedLaunch*>> clusters_;
   double student_ = 0;
-  std::vector<Estimate> out_;
 };
 
 Uncertain LaunchEstimator::sum(const Part& of) const {
@@ -79,28 +72,21 @@ std::vector<Estimate> LaunchEstimator::all() {
   // A run whose launches are all timed has no error.
   const MethodError error =
       timed_.size() == size_t(sum([](const TimedLaunch&) { return 1; }).value) ? MethodError{} : kLaunchError;
-  const Uncertain cycles = sum(part(BatchCount::Cycles));
   const auto with_differences = [&](double all, BatchCount which, double TimedLaunch::*functional) {
     Uncertain out = sum([&](const TimedLaunch& one) { return at(one.counts, which) - one.*functional; });
     out.value += all;
     return out;
   };
-  const Uncertain instructions = with_differences(totals_.instructions, BatchCount::Instructions,
-                                                  &TimedLaunch::functional_instructions),
-                  nodes = with_differences(totals_.nodes, BatchCount::Nodes, &TimedLaunch::functional_nodes);
-  add(Quantity::Cycles, cycles, error.cycles * cycles.value);
-  const double ipc = instructions.value / cycles.value;
-  add(Quantity::Ipc,
-      {ipc, ipc * ipc *
-                (cycles.variance / std::pow(cycles.value, 2) +
-                 instructions.variance / std::pow(std::max(1.0, instructions.value), 2))},
-      error.cycles * ipc);
-  add(Quantity::Instructions, instructions, 0);
-  if (totals_.nodes > 0) add(Quantity::Nodes, nodes, 0);
-  add_fraction(Quantity::L1HitRate, BatchCount::L1Hits, BatchCount::L1Reads, error.l1);
-  add_fraction(Quantity::L2HitRate, BatchCount::L2Hits, BatchCount::L2Reads, error.l2);
-  add_fraction(Quantity::DramUtilisation, BatchCount::DramBusy, BatchCount::DramClocks, error.utilisation);
-  return std::move(out_);
+  RunSums sums;
+  sums.cycles = sum(part(BatchCount::Cycles));
+  sums.instructions =
+      with_differences(totals_.instructions, BatchCount::Instructions, &TimedLaunch::functional_instructions);
+  if (totals_.nodes > 0)
+    sums.nodes = with_differences(totals_.nodes, BatchCount::Nodes, &TimedLaunch::functional_nodes);
+  for (size_t i = 0; i < kFractions.size(); ++i)
+    if (const auto& [which, above, below, own] = kFractions[i]; sum(part(below)).value > 0)
+      sums.fractions[i] = quotient(above, below);
+  return make_estimates(sums, student_, error);
 }
 
 }  // namespace

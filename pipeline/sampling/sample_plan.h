@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "pipeline/params.h"
@@ -11,12 +12,14 @@
 namespace glint::pipeline {
 
 struct SampleOptions {
-  double share = 0.05;  // the share of a launch's blocks that is timed: more than 0, at most a half
-  uint64_t seed = 1;    // selects which
+  double share = 0.05;          // the share of a launch's blocks that is timed: more than 0, at most a half
+  uint64_t seed = 1;            // selects which
+  std::string by = "position";  // the SampleWay that places the segments
 };
 
-// Names where a block that is not timed lies: within a segment, in front of one, or elsewhere.
-enum class Stratum : uint8_t { Inside, Lead, Rest, Count };
+// Names where a block that is not timed lies: within a segment, in front of one, or elsewhere. What surveyed
+// blocks cost was asked for before the plan was made, so they have run already.
+enum class Stratum : uint8_t { Inside, Lead, Rest, Surveyed, Count };
 
 // Names a block that runs functionally.
 struct WarmBlock {
@@ -28,8 +31,10 @@ struct WarmBlock {
 // segment is a run of neighbouring blocks, of which the small machine runs one in `scale`: as many as its
 // cores would get of them if it were whole. The other cores' blocks run functionally and leave what they
 // touch in the L2. So neighbours meet in the caches as they do in a whole run, which they do not when the
-// timed blocks are spread evenly. Half of the blocks in front of a segment, and an eighth of all others, run
-// functionally, too: for the L2, and to estimate the work of the whole launch.
+// timed blocks are spread evenly. A share of the blocks in front of a segment and of all others run
+// functionally, too: for the L2, and to estimate the work of the whole launch. The first segment has blocks
+// in front that fill the machine, and the last one has blocks behind it that keep the machine full, so that
+// each segment is measured on a full machine.
 struct SamplePlan {
   uint32_t num_blocks = 0;       // of the launch
   uint32_t scale = 1;            // the part of the machine that runs them is 1/scale
@@ -38,6 +43,8 @@ struct SamplePlan {
   std::vector<WarmBlock> warm;   // ascending
   // These are the numbers of blocks that are not timed, executed or not, by stratum.
   std::array<uint32_t, size_t(Stratum::Count)> sizes{};
+  // Returns how many blocks run functionally.
+  uint64_t num_functional() const { return warm.size() + sizes[size_t(Stratum::Surveyed)]; }
 };
 
 // Returns the largest part 1/n that the machine can be cut to: n divides the numbers of cores and of memory
@@ -48,8 +55,20 @@ uint32_t largest_scale(const GpuParams& gpu, double share);
 // fewer in a sample.
 GpuParams cut(const GpuParams& gpu, uint32_t scale);
 
+// Holds what some of a launch's blocks cost: every n-th one, or none where the way does not ask for it.
+struct Survey {
+  uint32_t step = 0, first = 0;  // it has the blocks first, first + step and so on; step 0: it has none
+  std::vector<double> costs;     // of these blocks
+  bool has(uint32_t block) const { return step > 0 && block >= first && (block - first) % step == 0; }
+};
+
+// Returns which blocks have to be surveyed. Their costs are still missing. Throws UserError for a share that
+// is out of range.
+Survey survey_for(const SampleOptions& options);
+
 // Makes the plan for a launch of `num_blocks` of which the cut machine holds `resident` at a time. Equal
 // arguments give equal plans. Throws UserError for a share that is too small for the launch.
-SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32_t resident, uint32_t scale);
+SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32_t resident, uint32_t scale,
+                       const Survey& survey = {});
 
 }  // namespace glint::pipeline

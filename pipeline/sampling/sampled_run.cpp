@@ -13,6 +13,7 @@
 #include "base/diagnostics.h"
 #include "pipeline/launch_part.h"
 #include "pipeline/run_stats.h"
+#include "pipeline/sampling/survey.h"
 #include "pipeline/sampling/warmer.h"
 #include "pipeline/scene_world.h"
 #include "pipeline/timing_machine.h"
@@ -20,13 +21,34 @@
 namespace glint::pipeline {
 namespace {
 
+// Returns what the L2 has asked of DRAM, and what it would still have to write.
+DramTraffic traffic_of(const TimingMachine& machine, uint64_t unwritten_sectors) {
+  const mem::Params& params = machine.params().memory;
+  const double atom = std::max(params.dram.atom_bytes(), mem::kSectorBytes);
+  DramTraffic out;
+  out.unwritten = double(unwritten_sectors) * mem::kSectorBytes / atom;
+  for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) {
+    const mem::Partition& partition = machine.memory().partition(i);
+    for (uint32_t slice = 0; slice < partition.num_slices(); ++slice) {
+      out.reads += double(partition.slice(slice).stats().dram_reads.value());
+      out.writes += double(partition.slice(slice).stats().dram_writes.value());
+      out.l2 += double(params.l2.slice_size) / atom;
+    }
+  }
+  return out;
+}
+
 // Runs the untimed blocks before the timed ones behind them start, and closes a batch where a segment begins.
 class Sampler final : public LaunchPart {
  public:
-  Sampler(const SamplePlan& plan, TimingMachine& machine, const exec::World& world)
+  Sampler(const SamplePlan& plan, TimingMachine& machine, const exec::World& world,
+          std::vector<BlockWork> surveyed)
       : plan_(plan),
         machine_(machine),
-        warmer_(world, machine.params().core.instruction_budget, machine.params().memory, machine.memory()) {}
+        warmer_(world, machine.params().core.instruction_budget, machine.params().memory, machine.memory(),
+                Written::AsRead) {
+    work_[size_t(Stratum::Surveyed)] = std::move(surveyed);
+  }
 
   std::span<const uint32_t> blocks() const override { return plan_.timed; }
 
@@ -37,6 +59,10 @@ class Sampler final : public LaunchPart {
     if (first_wave_ == 0) first_wave_ = started;
     // The second wave ends what is left of the cold start.
     if (!is_full_ && started >= 2 * first_wave_) is_full_ = true, mark_ = counts_of(machine_, now);
+    if (!is_half_done_ && 2 * started >= plan_.timed.size()) {
+      is_half_done_ = true;
+      half_ = counts_of(machine_, now), traffic_of_half_ = traffic();
+    }
     while (next_start_ < plan_.starts.size() && plan_.starts[next_start_] <= started) ++next_start_;
     const bool ends = started == plan_.timed.size(), begins = next_start_ > segment_;
     if (is_full_ && (ends || begins)) close_batch(now, started);
@@ -54,6 +80,9 @@ class Sampler final : public LaunchPart {
       work_[size_t(plan_.warm[next_warm_].stratum)].push_back({counts.instructions(), counts.rays.nodes});
     }
   }
+  DramTraffic traffic() const {
+    return traffic_of(machine_, machine_.memory().dirty_sectors() + warmer_.lost_sectors());
+  }
   void close_batch(Cycle now, uint32_t started) {
     const BatchCounts counts = counts_of(machine_, now);
     if (at(counts, BatchCount::Cycles) <= at(mark_, BatchCount::Cycles)) return;
@@ -69,14 +98,18 @@ class Sampler final : public LaunchPart {
   size_t next_warm_ = 0, next_start_ = 0, segment_ = 0;
   uint32_t last_started_ = 0, first_wave_ = 0;
   bool is_full_ = false;
-  BatchCounts mark_{};
+  bool is_half_done_ = false;
+  BatchCounts mark_{}, half_{};
+  DramTraffic traffic_of_half_{};
   std::vector<SampleBatch> batches_;
   std::array<std::vector<BlockWork>, size_t(Stratum::Count)> work_;
 };
 
 SampleCounts Sampler::finish(Cycle cycles) {
+  const DramTraffic at_end = traffic();
   warm(plan_.num_blocks);
-  return {&plan_, std::move(work_), std::move(batches_), counts_of(machine_, cycles)};
+  return {&plan_, std::move(work_), std::move(batches_), counts_of(machine_, cycles), at_end,
+          half_,  traffic_of_half_};
 }
 
 // Returns the blocks of the launch that the machine holds at a time.
@@ -86,30 +119,25 @@ uint32_t resident_blocks(const TimingMachine& machine) {
   return std::max(1u, result.residency.blocks * machine.num_cores());
 }
 
-void check(const SampleOptions& options) {
-  if (!(options.share > 0 && options.share <= 0.5))
-    throw UserError({}, fmt::format("a sample of {:g} % is out of range", 100 * options.share),
-                    "it has more than 0 % and at most 50 % of a launch's blocks");
-}
-
 }  // namespace
 
 SampledRun run_sampled(const exec::World& world, const GpuParams& gpu, const SampleOptions& options,
                        uint32_t threads, const LaunchWatch& watch) {
-  check(options);
+  Survey survey = survey_for(options);
   SampledRun run;
   const auto begin = std::chrono::steady_clock::now();
   const uint32_t scale = largest_scale(gpu, options.share);
   const GpuParams part = cut(gpu, scale);
   auto machine = std::make_unique<TimingMachine>(part, world, false, HostOptions{.threads = threads});
-  run.plan = plan_sample(options, exec::num_blocks(world), resident_blocks(*machine), scale);
-  Sampler sampler(run.plan, *machine, world);
   RenderResult& result = run.result;
+  std::vector<BlockWork> surveyed = run_survey(world, part.core.instruction_budget, survey, result.faults);
+  run.plan = plan_sample(options, exec::num_blocks(world), resident_blocks(*machine), scale, survey);
+  Sampler sampler(run.plan, *machine, world, std::move(surveyed));
   result.cycles = machine->run(watch, &sampler);
   result.end = machine->end();
   result.progress = machine->progress();
   machine->collect(result);
-  result.faults = machine->passed();
+  result.faults.add(machine->passed());
   auto stats = std::make_unique<RunStats>(std::move(machine));
   if (result.end == LaunchEnd::Whole) {
     const SampleCounts counts = sampler.finish(result.cycles);
@@ -130,7 +158,7 @@ SampledRun run_sampled(const exec::World& world, const GpuParams& gpu, const Sam
 }
 
 SampledRun render_sampled(RenderJob& job, const SampleOptions& options) {
-  check(options);
+  survey_for(options);  // A share that is out of range is told before the scene is built.
   SceneWorld scene(job, SceneWorld::Drain{job.scene});
   scene.world.on_fault = job.on_fault;
   SampledRun run = run_sampled(scene.world, job.gpu, options, job.threads, job.watch);

@@ -17,7 +17,7 @@ RenderResult warm_launch(const exec::World& world, const GpuParams& gpu, Caches 
   mem::MemorySystem memory(gpu.memory, gpu.cores, gpu.clock_mhz, &unread);
   mem::MemoryContents before = device.take_contents();
   if (caches == Caches::Warm && !before.empty()) memory.put_contents(std::move(before));
-  Warmer warmer(world, gpu.core.instruction_budget, gpu.memory, memory);
+  Warmer warmer(world, gpu.core.instruction_budget, gpu.memory, memory, Written::StaysDirty);
   const uint32_t num_blocks = exec::num_blocks(world);
   LaunchProgress progress;
   progress.num_warps = uint64_t{num_blocks} * exec::warps_per_block(world);

@@ -8,7 +8,7 @@ namespace glint::pipeline {
 // Runs the launch on the functional machine and lets the device's L2 hold the lines that it touches, on top
 // of what launches before it have left, or, with cold caches, of nothing. The result has counts and no
 // statistics. A launch that the watch stops leaves empty caches. Throws as run_functional() does. Model:
-// lines that are written count as read, so that nothing is written back later (Warmer).
+// lines that the launch writes are written back by later launches, and never by itself.
 RenderResult warm_launch(const exec::World& world, const GpuParams& gpu, Caches caches, Device& device,
                          const LaunchWatch& watch);
 

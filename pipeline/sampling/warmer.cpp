@@ -3,6 +3,7 @@
 #include "pipeline/sampling/warmer.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/num_lanes.h"
 #include "isa/effects.h"
@@ -10,9 +11,10 @@
 namespace glint::pipeline {
 
 Warmer::Warmer(const exec::World& world, uint64_t instruction_budget, const mem::Params& params,
-               mem::MemorySystem& memory)
+               mem::MemorySystem& memory, Written written)
     : world_(world),
-      line_bytes_(params.line),
+      line_shift_(uint32_t(std::countr_zero(params.line))),
+      written_(written),
       memory_(memory),
       executor_(world),
       endless_(*world.image),
@@ -21,7 +23,7 @@ Warmer::Warmer(const exec::World& world, uint64_t instruction_budget, const mem:
         touch_bytes(world_.memory->physical(fetch.address), fetch.bytes);
       }),
       lines_(params.line),
-      recent_(std::max<uint64_t>(1, params.l1.size / params.line)) {
+      recent_(std::bit_floor(std::max<uint64_t>(1, params.l1.size / params.line))) {
   executor_.retired.listen([this](const exec::Retired& retired) { touch(retired); });
 }
 
@@ -54,21 +56,32 @@ void Warmer::touch(const exec::Retired& retired) {
         if (texels[size_t(lane)] != exec::TexelList::kNone)
           lines_.add(world_.memory->physical(texels[size_t(lane)]), 4, lane);
       });
-  for (const core::LineSectors& line : lines_.lines()) touch_line(line.line, line.sectors);
+  const bool writes = isa::effect_row(effect).writes_memory;
+  const mem::Touch how = writes && written_ == Written::StaysDirty ? mem::Touch::Write : mem::Touch::Read;
+  for (const core::LineSectors& line : lines_.lines()) touch_line(line.line, line.sectors, how);
 }
 
+// Nodes lie in one line or two.
 void Warmer::touch_bytes(Address physical, uint32_t bytes) {
-  for (Address sector = physical / mem::kSectorBytes * mem::kSectorBytes; sector < physical + bytes;
-       sector += mem::kSectorBytes)
-    touch_line(sector / line_bytes_ * line_bytes_, uint8_t(1u << sector % line_bytes_ / mem::kSectorBytes));
+  constexpr uint32_t kShift = std::countr_zero(mem::kSectorBytes);
+  const uint32_t in_line = line_shift_ - kShift;  // a line has 1 << in_line sectors
+  const Address end = (physical + bytes - 1) >> kShift;
+  for (Address sector = physical >> kShift; sector <= end;) {
+    const Address line = sector >> in_line, last = std::min(end, ((line + 1) << in_line) - 1);
+    const auto first_bit = uint32_t(sector - (line << in_line)), bits = uint32_t(last - sector + 1);
+    touch_line(line << line_shift_, uint8_t(((1u << bits) - 1) << first_bit), mem::Touch::Read);
+    sector = last + 1;
+  }
 }
 
-void Warmer::touch_line(Address line, uint8_t sectors) {
-  Recent& recent = recent_[line / line_bytes_ % recent_.size()];
-  if (recent.line == line && (recent.sectors & sectors) == sectors) return;
-  recent.sectors = recent.line == line ? uint8_t(recent.sectors | sectors) : sectors;
-  recent.line = line;
-  memory_.warm(line, sectors);
+void Warmer::touch_line(Address line, uint8_t sectors, mem::Touch touch) {
+  Recent& recent = recent_[(line >> line_shift_) & (recent_.size() - 1)];
+  if (recent.line != line) recent = {line, 0, 0};
+  uint8_t& known = touch == mem::Touch::Write ? recent.written : recent.sectors;
+  if ((known & sectors) == sectors) return;
+  recent.sectors |= sectors;
+  known |= sectors;
+  lost_ += memory_.warm(line, sectors, touch);
 }
 
 }  // namespace glint::pipeline

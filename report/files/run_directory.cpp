@@ -112,7 +112,7 @@ nlohmann::ordered_json json_of(const SampleInfo& sample) {
             {"launches", sample.all},
             {"timed", sample.timed},
             {"clusters", sample.clusters}};
-  return {{"share", sample.share}, {"seed", sample.seed},   {"scale", sample.scale},
+  return {{"share", sample.share}, {"seed", sample.seed},   {"by", sample.by},    {"scale", sample.scale},
           {"blocks", sample.all},  {"timed", sample.timed}, {"warm", sample.warm}};
 }
 

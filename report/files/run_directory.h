@@ -52,6 +52,7 @@ struct SampleInfo {
   uint64_t all = 0, timed = 0;  // blocks of the launch, or launches of the run
   uint32_t scale = 1;           // 1/scale of the machine ran the blocks
   uint64_t warm = 0;            // blocks that ran functionally
+  std::string by{};             // how blocks were chosen, as --sample-by names it
   uint64_t clusters = 0;        // of launches
 };
 

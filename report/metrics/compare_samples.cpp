@@ -150,7 +150,8 @@ bool is_paired(const RunRecord& before, const RunRecord& after, const Timed& was
                const std::string fact = fmt::format("sample.{}", name);
                return before.fact(fact) == after.fact(fact);
              }) &&
-         was.launches == is.launches && was.clusters == is.clusters && was.weights == is.weights;
+         before.text("sample.by") == after.text("sample.by") && was.launches == is.launches &&
+         was.clusters == is.clusters && was.weights == is.weights;
 }
 
 }  // namespace

@@ -37,6 +37,28 @@ class GlintTest(unittest.TestCase):
         return subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=text, cwd=self.folder, timeout=300,
                               env={**os.environ, **environment})
 
+    def run_into(self, out, *arguments):
+        """Runs something well into a folder, and returns what it printed."""
+        done = self.glint("run", *arguments, "--out", out)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def collect(self, sweep):
+        """Runs a sweep well, and returns the rows of its points."""
+        for words in (["run", sweep], ["collect", sweep, "--out", "found"]):
+            done = self.glint("sweep", *words)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return self.rows("found/points.csv")
+
+    def rows(self, name):
+        """Returns the rows of a table as dictionaries."""
+        with (self.folder / name).open(newline="") as file:
+            return list(csv.DictReader(file))
+
+    def facts(self, out):
+        """Returns what run.json of a folder says."""
+        return json.loads((self.folder / out / "run.json").read_text())
+
     def expect(self, code, parts, *arguments):
         """Runs glint, which must exit with `code` and say every one of `parts` on stderr."""
         done = self.glint(*arguments)

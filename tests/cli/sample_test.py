@@ -1,8 +1,6 @@
 # Tests what a sampled run leaves, what it refuses, and how two of them are compared.
 # SPDX-License-Identifier: Apache-2.0
 """usage: sample_test.py GLINT SOURCE_DIR"""
-import csv
-import json
 import sys
 
 import glint_case
@@ -18,9 +16,7 @@ SAMPLE = [*FRAME, "--sample-pixels", "15%"]
 
 class Sampling(GlintTest):
     def sample(self, out, *arguments):
-        done = self.glint("run", *SAMPLE, "--out", out, *arguments)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return done.stdout
+        return self.run_into(out, *SAMPLE, *arguments)
 
     def test_a_sampled_run_has_estimates_with_intervals_and_says_what_was_sampled(self):
         said = self.sample("a", "--sample-seed", "3")
@@ -30,8 +26,8 @@ class Sampling(GlintTest):
         for name in ("cycles", "ipc", "l1_hit_rate", "l2_hit_rate", "dram_utilisation"):
             value, low, high = (statistics[f"gpu.sample.{name}{end}"] for end in ("", "_low", "_high"))
             self.assertTrue(low < value < high, name)
-        sample = json.loads((self.folder / "a/run.json").read_text())["sample"]
-        self.assertEqual((sample["share"], sample["seed"], sample["scale"], sample["blocks"]), (0.15, 3, 4, 384))
+        sample = self.facts("a")["sample"]
+        self.assertEqual((sample["share"], sample["seed"], sample["by"], sample["scale"], sample["blocks"]), (0.15, 3, "position", 4, 384))
         self.assertGreater(len((self.folder / "a/sample.csv").read_text().splitlines()), 3)
         # Metrics of the sample alone would be taken for those of the launch.
         metrics = self.glint("stats", "a", "--format", "metrics").stdout
@@ -43,7 +39,7 @@ class Sampling(GlintTest):
         self.sample("a")
         self.assertEqual(self.glint("run", *FRAME, "--out", "a").returncode, 0)
         self.assertFalse((self.folder / "a/sample.csv").exists())
-        self.assertNotIn("sample", json.loads((self.folder / "a/run.json").read_text()))
+        self.assertNotIn("sample", self.facts("a"))
 
     def test_runs_of_the_same_blocks_are_compared_in_pairs(self):
         self.sample("a")
@@ -56,6 +52,32 @@ class Sampling(GlintTest):
         self.assertNotRegex(equal, r"% +significant")
         self.assertIn("different blocks", self.glint("compare", "a", "other").stdout)
         self.expect(1, ["failed: cycles>5%"], "compare", "a", "slow", "--fail-on", "cycles>5%")
+
+    def test_blocks_can_be_chosen_by_what_they_cost(self):
+        self.sample("a")
+        for way in ("uniform", "cost", "heat"):
+            self.sample(way, "--sample-by", way)
+            sample = self.facts(way)["sample"]
+            self.assertEqual(sample["by"], way)
+            whole, there = (self.statistics(out)["gpu.sample.cycles"] for out in ("a", way))
+            self.assertNotEqual(whole, there)
+            self.assertIn("different blocks", self.glint("compare", "a", way).stdout)
+        self.expect(2, ["--sample-by"], "run", *SAMPLE, "--sample-by", "colour")
+        self.expect(2, ["--sample-by needs --sample-pixels"], "run", *FRAME, "--sample-by", "cost")
+
+    def test_a_bench_samples_pixels_and_launches_and_shows_intervals(self):
+        words = ["bench", "WKND_SH", "gaussian", "--small", "--size", "128x96", "--spp", "1", "--set", "core.warps=8", "-j", "1", "--out", "bench"]
+        done = self.glint(*words, "--sample-pixels", "15%", "--sample-launches", "8", "--sample-seed", "3")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"WKND_SH +[\d ]+ +\+- \d+\.\d %")
+        rows = self.rows("bench/estimates.csv")
+        for workload in ("WKND_SH", "gaussian"):
+            found = {row["estimate"]: row for row in rows if row["workload"] == workload}
+            self.assertTrue(float(found["cycles"]["low"]) < float(found["cycles"]["value"]) < float(found["cycles"]["high"]))
+            self.assertEqual(float(found["cycles"]["value"]), glint.Run(self.folder / "bench" / workload).estimates["cycles"].value)
+        self.expect(2, ["--sample-launches belongs to"], "bench", "WKND_SH", "--sample-launches", "8")
+        self.expect(2, ["--sample-pixels belongs to"], "bench", "gaussian", "--sample-pixels", "8%")
+        self.expect(2, ["cannot be used with --mode functional"], "bench", "WKND_SH", "--sample-pixels", "8%", "--mode", "functional")
 
     def test_the_python_package_has_the_estimates(self):
         self.sample("a")
@@ -78,11 +100,7 @@ sample-pixels = "15%"
 method = "grid"
 keys = { rt.warps = [1, 4], core.warps = [4] }
 """)
-        for words in (["run", "two.toml"], ["collect", "two.toml", "--out", "found"]):
-            done = self.glint("sweep", *words)
-            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        with (self.folder / "found/points.csv").open(newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = self.collect("two.toml")
         self.assertEqual(len(rows), 2)
         for row in rows:
             self.assertTrue(float(row["cycles_low"]) < float(row["cycles"]) < float(row["cycles_high"]))

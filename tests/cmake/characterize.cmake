@@ -4,6 +4,7 @@ glint_test(unit_characterize FOLDER unit/characterize LINKS glint::characterize 
 glint_test(unit_analytical FOLDER unit/analytical LINKS glint::analytical nlohmann_json::nlohmann_json)
 glint_test(unit_interval FOLDER unit/interval LINKS glint::interval)
 glint_test(unit_sampling FOLDER unit/sampling LINKS glint::sampling)
+glint_test(contract_sample_way LINKS glint::sampling SOURCES contract/sample_way_test.cpp)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Tables Page Browser)

@@ -35,7 +35,7 @@ def reduced(words):
         rest = [workplace.SLOW_SCENES.get(word, word) for word in without(rest, "--sample-pixels")]
     elif command == "bench":
         at = next((i for i, word in enumerate(rest) if word.startswith("-")), len(rest))
-        names, options = rest[:at], rest[at:]
+        names, options = rest[:at], without(rest[at:], "--sample-pixels")
         if len(names) != 1 or names[0].islower():
             names = os.environ["GLINT_DOCS_BENCH"].split()
         rest = [workplace.SLOW_SCENES.get(name, name) for name in names] + options

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <set>
+#include <system_error>
 
 #include "apps/glint/bench/estimate.h"
 #include "apps/glint/bench/metrics_table.h"
@@ -214,6 +215,10 @@ class Bench {
     }
     const std::string table = summary_table(rows());
     directory.write("summary.txt", table);
+    std::error_code ignored;  // The file may not exist.
+    std::filesystem::remove(directory.path_of(kEstimates), ignored);
+    if (const std::string estimates = estimates_table(rows()); !estimates.empty())
+      directory.write(kEstimates, estimates);
     write_record(directory);
     print_output("\n{}\n{} of {} workloads complete, metrics in {}\n", table, done, plan_.tasks.size(),
                  directory.path_of("metrics.csv"));

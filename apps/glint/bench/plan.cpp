@@ -36,13 +36,13 @@ std::string key_of(const Session& session, const BenchOptions& options) {
   const pipeline::GpuParams gpu = read_config(session.resources, options.config, options.settings);
   const std::string text = fmt::format(
       "config {:016x} mode {} frame {} assets '{}' version {} {} program {:016x} shaders {:016x}{}{} "
-      "stats {} small {}",
+      "stats {} small {} sample {} {} {} {}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode,
       fmt::join(options.frame.arguments(), " "),
       options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, GLINT_GIT,
       report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
       identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "), options.stats,
-      options.small);
+      options.small, options.sample.share, options.sample.by, options.sample.launches, options.sample.seed);
   return fmt::format("{:016x}", report::fnv1a(text));
 }
 
@@ -64,6 +64,21 @@ bool is_complete(const BenchTask& task, const std::string& key) {
   }
 }
 
+bool has_launches(const NamedWorkload& workload) {
+  return workload.is_program() || !workload.frames.empty();
+}
+
+// Returns the options of `glint run` that sample the workload; none where it runs whole.
+std::vector<std::string> sample_arguments(const SampleChoice& sample, const NamedWorkload& workload) {
+  std::vector<std::string> out;
+  if (has_launches(workload) && sample.wants_launches())
+    out = {"--sample-launches=" + sample.launches};
+  else if (!has_launches(workload) && sample.wants_pixels())
+    out = {"--sample-pixels=" + sample.share, "--sample-by=" + sample.by};
+  if (!out.empty()) out.push_back(fmt::format("--sample-seed={}", sample.seed));
+  return out;
+}
+
 std::vector<std::string> command_of(const Session& session, const BenchOptions& options,
                                     const BenchTask& task) {
   std::vector<std::string> out = {"run",
@@ -80,9 +95,23 @@ std::vector<std::string> command_of(const Session& session, const BenchOptions& 
   out.push_back("--stats=" + options.stats);
   if (options.max_cycles > 0) out.push_back(fmt::format("--max-cycles={}", options.max_cycles));
   for (const std::string& option : observe_arguments(options.observe)) out.push_back(option);
+  for (const std::string& option : sample_arguments(options.sample, task.workload)) out.push_back(option);
   for (const std::string& setting : options.settings) out.push_back("--set=" + setting);
   if (!options.assets.empty()) out.push_back("--assets=" + options.assets);
   return out;
+}
+
+// Refuses a sample together with what needs whole launches.
+void check_sampled(const BenchOptions& options) {
+  check_sample_forms(options.sample);
+  const std::string given = options.sample.given();
+  if (given.empty()) return;
+  if (options.mode != "timing")
+    throw UserError({}, given + " cannot be used with --mode functional",
+                    "the functional machine has no cycles, so run the whole launches");
+  if (observes(options.observe) || options.max_cycles)
+    throw UserError({}, given + " cannot be used with --profile, --sample, --heat, --trace and --max-cycles",
+                    "they need whole launches");
 }
 
 // Refuses options that have no meaning for any or for one of the workloads.
@@ -95,6 +124,15 @@ void check_kinds(const BenchOptions& options, const std::vector<NamedWorkload>& 
   if (const std::string given = options.frame.given(); !given.empty() && programs == ssize(workloads))
     throw UserError({}, given + " belongs to scenes, and the bench has none",
                     "compute programs have a full input, and a small one with --small");
+  const auto frames = std::ranges::count_if(workloads, has_launches) - programs;
+  if (options.sample.wants_launches() && programs + frames == 0)
+    throw UserError({},
+                    "--sample-launches belongs to compute programs and to workloads of several frames, and "
+                    "the bench has none",
+                    "--sample-pixels samples the others");
+  if (options.sample.wants_pixels() && programs + frames == ssize(workloads))
+    throw UserError({}, "--sample-pixels belongs to workloads of one frame, and the bench has none",
+                    "--sample-launches samples programs and workloads of several frames");
   if (observes(options.observe) && programs > 0)
     throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with compute programs",
                     "they belong to one launch, and a program may have many");
@@ -127,6 +165,7 @@ uint64_t hash_of_shaders(const setup::Resources& resources) {
 BenchPlan plan_bench(const Session& session, const BenchOptions& options) {
   check_observation(options.observe, options.mode == "timing");
   check_max_cycles(options.max_cycles, options.mode == "timing");
+  check_sampled(options);
   BenchPlan plan;
   const scenes::RenderParams frame = options.frame.frame();
   options.frame.overrides();  // Texts that are none of a scene are told before anything runs.

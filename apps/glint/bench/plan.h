@@ -8,6 +8,7 @@
 #include "apps/glint/bench/process_pool.h"
 #include "apps/glint/bench/workloads.h"
 #include "apps/glint/options/frame_options.h"
+#include "apps/glint/options/sample_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/run_profile.h"
 
@@ -25,6 +26,7 @@ struct BenchOptions {
   uint64_t max_cycles = 0;        // limit of each launch; 0: none
   std::string stats = "full";     // "full" or "compact"
   pipeline::Observation observe;  // what each run notes
+  SampleChoice sample;            // of pixels for scenes, of launches for programs and frames
 };
 
 struct BenchTask {

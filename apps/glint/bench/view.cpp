@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/bench/view.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <fmt/format.h>
 
 #include "apps/glint/options/output.h"
+#include "pipeline/sampling/estimate.h"
+#include "report/metrics/compare_samples.h"
 #include "report/metrics/formula.h"
 #include "report/metrics/metrics.h"
 
@@ -32,6 +35,18 @@ std::string whole(const std::vector<report::MetricValue>& metrics, std::string_v
   return "";
 }
 
+// Returns half the 95 % interval of a sampled run's cycles, as a share of them: "+- 4.2 %". A whole run has
+// none.
+std::string interval_of(const report::RunRecord& run) {
+  if (!report::is_sampled(run)) return "";
+  const auto value = [&](const char* name) {
+    const std::vector<double> values = run.values(name);
+    return values.empty() ? 0 : values[0];
+  };
+  const double half = (value("gpu.sample.cycles_high") - value("gpu.sample.cycles_low")) / 2;
+  return fmt::format("+- {:.1f} %", 100 * half / std::max(1.0, value("gpu.sample.cycles")));
+}
+
 }  // namespace
 
 std::string gigabytes(uint64_t bytes) {
@@ -40,6 +55,8 @@ std::string gigabytes(uint64_t bytes) {
 
 std::string figures_of(const report::RunRecord& run) {
   const std::vector<report::MetricValue> metrics = report::metrics_of(run);
+  if (report::is_sampled(run))
+    return fmt::format("{:>11} cycles  {}, of a sample", whole(metrics, "cycles"), interval_of(run));
   const bool has_rays = report::evaluate("sum(gpu.rays)", run).value_or(0) > 0;
   if (!has_rays)
     return run.text("mode") == "functional"
@@ -96,21 +113,42 @@ void BenchView::clear() {
 }
 
 std::string summary_table(const std::vector<BenchRow>& rows) {
+  const bool any_sampled =
+      std::ranges::any_of(rows, [](const BenchRow& row) { return report::is_sampled(row.run); });
   std::vector<std::vector<std::string>> cells = {
-      {"", "cycles", "thread IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays", "nodes", "",
-       ""},
-      {"workload", "", "", "%", "%", "%", "%", "%", "", "a ray", "time", "memory"}};
+      {"", "cycles", "95 %", "thread IPC", "SIMT", "RT warps", "RT rays", "RT misses", "DRAM", "rays",
+       "nodes", "", ""},
+      {"workload", "", "interval", "", "%", "%", "%", "%", "%", "", "a ray", "time", "memory"}};
   for (const BenchRow& row : rows) {
     const std::vector<report::MetricValue> m = report::metrics_of(row.run);
     const bool is_partial = row.process->state == Process::State::Partial;
     cells.push_back({row.task->workload.name() + (is_partial ? " (partial)" : ""), whole(m, "cycles"),
-                     shown(m, "thread_ipc", 1), shown(m, "simt_efficiency", 1, 100),
+                     interval_of(row.run), shown(m, "thread_ipc", 1), shown(m, "simt_efficiency", 1, 100),
                      shown(m, "rt_occupancy", 1, 100), shown(m, "rt_efficiency", 1, 100),
                      shown(m, "rt_miss_rate", 1, 100), shown(m, "dram_util", 1, 100), whole(m, "rays_total"),
                      shown(m, "avg_nodes_per_ray", 1), report::seconds(row.process->seconds),
                      gigabytes(row.process->peak_bytes)});
   }
-  return report::table(cells, "<>>>>>>>>>>>");
+  if (!any_sampled)
+    for (std::vector<std::string>& row : cells) row.erase(row.begin() + 2);
+  return report::table(cells, any_sampled ? "<>>>>>>>>>>>>" : "<>>>>>>>>>>>");
+}
+
+std::string estimates_table(const std::vector<BenchRow>& rows) {
+  std::string out;
+  for (const BenchRow& row : rows) {
+    if (!report::is_sampled(row.run)) continue;
+    if (out.empty()) out = "workload,estimate,value,low,high\n";
+    for (size_t q = 0; q < size_t(pipeline::Quantity::Count); ++q) {
+      const std::string name(pipeline::name_of(pipeline::Quantity(q)));
+      const std::vector<double> value = row.run.values("gpu.sample." + name),
+                                low = row.run.values("gpu.sample." + name + "_low"),
+                                high = row.run.values("gpu.sample." + name + "_high");
+      if (value.size() == 1 && low.size() == 1 && high.size() == 1)
+        out += fmt::format("{},{},{},{},{}\n", row.task->workload.name(), name, value[0], low[0], high[0]);
+    }
+  }
+  return out;
 }
 
 }  // namespace glint::app

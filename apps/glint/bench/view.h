@@ -47,6 +47,11 @@ struct BenchRow {
 };
 std::string summary_table(const std::vector<BenchRow>& rows);
 
+// Returns the estimates of all sampled runs as a table, a row for each, with the ends of their 95 %
+// intervals; "" when no run is sampled.
+inline constexpr const char* kEstimates = "estimates.csv";
+std::string estimates_table(const std::vector<BenchRow>& rows);
+
 std::string gigabytes(uint64_t bytes);  // "1.24 GB", "0.08 GB"
 
 }  // namespace glint::app

@@ -55,14 +55,16 @@ void add_bench(Command app, Session& session) {
       .capture_default_str();
   add_frame_options(command, options->frame);
   add_observe_options(command, options->observe);
+  add_sample_options(command, options->sample);
   add_stats_option(command, options->stats);
   add_max_cycles_option(
       command, options->max_cycles,
       "Cycle at which each launch is ended early; its row of the summary is marked as partial, "
       "metrics.csv does not have it, and the exit code is 6 (default: no limit)");
-  command.callback([&session, options] {
-    session.action = [&session, options] {
+  command.callback([&session, options, command] {
+    session.action = [&session, options, command] {
       options->settings = setup::with_oracles(options->oracles, options->settings);
+      options->sample.note_given(command);
       return run_bench(session, *options);
     };
   });

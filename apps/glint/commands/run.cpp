@@ -57,10 +57,19 @@ void check_sampled(const RunOptions& options) {
                     "it samples compute programs, lists of launches and --frames");
 }
 
-Exit run(const Session& session, const RunOptions& options) {
+// Refuses options that do not go together, or not with what is run. It looks at no more than names.
+void check(const RunOptions& options) {
   const std::string& what = options.scene.scene;
   check_scene_options(options);
   check_sampled(options);
+  if (options.small && !names_program(what))
+    throw UserError({}, fmt::format("--small belongs to compute programs, and '{}' is none", what),
+                    "'glint list programs' names them");
+}
+
+Exit run(const Session& session, const RunOptions& options) {
+  const std::string& what = options.scene.scene;
+  check(options);
   if (names_script(what)) {
     if (options.launch.max_cycles)
       throw UserError({}, "--max-cycles cannot be used with Amber scripts",
@@ -79,9 +88,6 @@ Exit run(const Session& session, const RunOptions& options) {
     throw UserError({}, fmt::format("'{}' is one argument too many", options.more[0]),
                     "only Amber scripts can be run several at a time");
   if (names_program(what)) return run_program(session, what, options.small, options.launch);
-  if (options.small)
-    throw UserError({}, fmt::format("--small belongs to compute programs, and '{}' is none", what),
-                    "'glint list programs' names them");
   if (names_capsule(what)) return run_capsule(session, what, options.launch);
   if (names_pipeline(what)) return run_pipeline(session, what, options.launch);
   if (names_kernel(what)) return run_ptx(session, what, options.kernel_launch, options.launch);
@@ -147,6 +153,7 @@ void add_run(Command app, Session& session) {
     options->scene.shader_given = command.count("--shader") > 0;
     options->scene.sequence.caches = options->caches;
     if (!options->caches.empty()) options->script.caches = options->caches;
+    session.check = [options] { check(*options); };
     session.action = [&session, options] { return run(session, *options); };
   });
 }

@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "base/diagnostics.h"
+#include "base/registry.h"
+#include "pipeline/sampling/sample_way.h"
 
 namespace glint::app {
 namespace {
@@ -52,7 +54,7 @@ pipeline::SampleOptions SampleChoice::options() const {
   if (!percent || !(*percent > 0 && *percent <= 50))
     throw UserError({}, fmt::format("--sample-pixels is '{}', expected more than 0% and at most 50%", share),
                     "for example --sample-pixels 5%");
-  return {*percent / 100, seed};
+  return {*percent / 100, seed, by};
 }
 
 uint32_t SampleChoice::launches_of(uint32_t all, uint32_t least) const {
@@ -63,17 +65,15 @@ uint32_t SampleChoice::launches_of(uint32_t all, uint32_t least) const {
   if (least >= all)
     throw UserError(
         {}, fmt::format("the run has {} launch{}, and a sample needs as many", all, all == 1 ? "" : "es"),
-        "it has the first launch and two of each kernel that is launched again; leave --sample-launches "
-        "away");
+        "it has the first launch of each kernel and two later ones; leave --sample-launches away");
   if (count >= all)
     throw UserError({}, fmt::format("a sample of {} leaves nothing out, because the run has {}", asked, all),
                     "take fewer, or leave --sample-launches away");
   if (count < least)
     throw UserError(
         {}, fmt::format("a sample of {} is too small, because the run has {}", asked, all),
-        fmt::format(
-            "it has the first launch and two of each kernel that is launched again: at least {} ({:.3g} %)",
-            least, std::ceil(1000.0 * least / all) / 10));
+        fmt::format("it has the first launch of each kernel and two later ones: at least {} ({:.3g} %)",
+                    least, std::ceil(1000.0 * least / all) / 10));
   return count;
 }
 
@@ -89,16 +89,37 @@ void add_sample_options(Command command, SampleChoice& choice) {
                   "share such as 5%), run the others functionally, and estimate the whole run with 95 % "
                   "intervals (docs/sampling.md)")
       .type_name("NUMBER|SHARE");
+  command
+      .add_option(
+          "--sample-by", choice.by,
+          "Selects how --sample-pixels places what it times: position spreads it over the frame, "
+          "uniform puts it anywhere, cost and heat look first at what a few blocks of each place cost "
+          "functionally (docs/sampling.md)")
+      .one_of(Registry<pipeline::SampleWay>::names())
+      .capture_default_str();
   command.add_option("--sample-seed", choice.seed, "Selects which pixels or launches a sample has")
       .capture_default_str();
+}
+
+void SampleChoice::note_given(const Command& command) {
+  seed_given = command.count("--sample-seed") > 0;
+  by_given = command.count("--sample-by") > 0;
 }
 
 void check_sample_options(const SampleChoice& choice) {
   if (choice.wants_pixels() && choice.wants_launches())
     throw UserError({}, "--sample-pixels and --sample-launches cannot be used together",
                     "the first samples one launch, and the second one many");
+  check_sample_forms(choice);
+}
+
+void check_sample_forms(const SampleChoice& choice) {
   if (choice.given().empty() && choice.seed_given)
     throw UserError({}, "--sample-seed needs --sample-pixels or --sample-launches");
+  if (choice.by_given && !choice.wants_pixels())
+    throw UserError({}, "--sample-by needs --sample-pixels",
+                    "--sample-launches chooses among clusters of launches");
+  if (choice.wants_pixels()) choice.options();
   if (choice.wants_launches()) launch_share(choice.launches);
 }
 

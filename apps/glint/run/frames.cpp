@@ -265,16 +265,10 @@ void describe_sequence(const report::SequenceInfo& sequence, report::RunInfo& in
 
 Exit run_frames(const Session& session, const SceneOptions& options, const LaunchOptions& launch) {
   const report::SequenceInfo sequence = sequence_of(options.sequence);
-  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
-  const std::unique_ptr<pipeline::StructureCache> structures =
-      open_structure_cache(launch.shaders, session.plugins);
-  exec::PrintLog prints(launch.print_limit);
-  pipeline::RenderJob job = scene_job(session, options, launch);
+  ReadySceneJob ready(session, options, launch);
+  pipeline::RenderJob& job = ready.job;
   check_motion(options, sequence, job.scene);
   job.update = structure_update(options.sequence);
-  job.glsl = glsl_options(launch.shaders, cache.get());
-  job.structure_cache = structures.get();
-  job.prints = &prints;
   report::RunDirectory directory(
       launch.out.empty() ? fmt::format("out/{}_{}-{}-frames", job.scene.name, options.shader, launch.mode)
                          : launch.out);

@@ -89,7 +89,7 @@ void finish_launch_options(const Command& command, LaunchOptions& options) {
   options.config_given = command.count("--config") > 0;
   options.mode_given = command.count("--mode") > 0;
   options.on_fault = options.on_fault_name == "warn" ? exec::OnFault::Warn : exec::OnFault::Stop;
-  options.sample.seed_given = command.count("--sample-seed") > 0;
+  options.sample.note_given(command);
   options.settings = setup::with_oracles(options.oracles, options.settings);
   if (options.shaders.contract) options.settings.push_back("compiler.contract=true");
 }

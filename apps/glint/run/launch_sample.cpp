@@ -58,7 +58,9 @@ pipeline::RenderResult LaunchSample::survey(const std::string& kernel, const exe
   functional.timing = false;
   pipeline::RenderResult result = device_.run(world, functional, watch);
   faults_.add(result.faults);
-  const bool finds_nothing = surveyed_.empty() || caches == pipeline::Caches::Cold;
+  const bool finds_nothing =
+      caches == pipeline::Caches::Cold ||
+      std::ranges::none_of(surveyed_, [&](const Surveyed& one) { return one.kernel == kernel; });
   surveyed_.push_back({kernel, finds_nothing, counts_of(world, result)});
   return result;
 }

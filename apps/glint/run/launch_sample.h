@@ -32,8 +32,8 @@ class LaunchSample {
  public:
   LaunchSample(const LaunchOptions& options, const pipeline::GpuParams& gpu, bool no_skip, uint32_t threads);
 
-  // Runs a launch functionally, and notes what it did. `kernel` names launches that may be alike. Those that
-  // find empty caches, as the first one does, are not like those that find warm ones.
+  // Runs a launch functionally, and notes what it did. `kernel` names launches that may be alike. The first
+  // one of a kernel, and those that find empty caches, are not like those that find what others have touched.
   pipeline::RenderResult survey(const std::string& kernel, const exec::World& world, pipeline::Caches caches,
                                 const pipeline::LaunchWatch& watch);
   // Chooses the launches to time. Throws UserError when the sample has another size than it may have.
@@ -60,7 +60,7 @@ class LaunchSample {
  private:
   struct Surveyed {
     std::string kernel;
-    bool finds_nothing = false;  // in the caches
+    bool finds_nothing = false;  // of its data in the caches
     std::vector<double> counts;  // in the order of kCounts
   };
   std::string signatures_csv() const;

@@ -63,7 +63,8 @@ pipeline::SampledRun render_sample(const SampleChoice& choice, report::RunInfo& 
                                    .all = run.plan.num_blocks,
                                    .timed = run.plan.timed.size(),
                                    .scale = run.plan.scale,
-                                   .warm = run.plan.warm.size()};
+                                   .warm = run.plan.num_functional(),
+                                   .by = options.by};
   return run;
 }
 
@@ -128,6 +129,8 @@ pipeline::RenderJob frame_job(const Session& session, const SceneOptions& option
   return job;
 }
 
+namespace {
+
 pipeline::RenderJob scene_job(const Session& session, const SceneOptions& options,
                               const LaunchOptions& launch) {
   pipeline::GpuParams gpu = gpu_of(session.resources, launch);
@@ -140,6 +143,18 @@ pipeline::RenderJob scene_job(const Session& session, const SceneOptions& option
   check_observation(job.observe, job.timing);
   check_max_cycles(launch.max_cycles, job.timing);
   return job;
+}
+
+}  // namespace
+
+ReadySceneJob::ReadySceneJob(const Session& session, const SceneOptions& options, const LaunchOptions& launch)
+    : shaders(open_shader_cache(launch.shaders)),
+      structures(open_structure_cache(launch.shaders, session.plugins)),
+      prints(launch.print_limit),
+      job(scene_job(session, options, launch)) {
+  job.glsl = glsl_options(launch.shaders, shaders.get());
+  job.structure_cache = structures.get();
+  job.prints = &prints;
 }
 
 report::StructureInfo structure_info(const pipeline::StructureCounts& made) {
@@ -185,14 +200,8 @@ Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions
   if (launch.sample.wants_launches())
     throw UserError({}, "--sample-launches needs --frames, because a frame is one launch",
                     "--sample-pixels times a share of one frame");
-  const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(launch.shaders);
-  const std::unique_ptr<pipeline::StructureCache> structures =
-      open_structure_cache(launch.shaders, session.plugins);
-  exec::PrintLog prints(launch.print_limit);
-  pipeline::RenderJob job = scene_job(session, options, launch);
-  job.glsl = glsl_options(launch.shaders, cache.get());
-  job.structure_cache = structures.get();
-  job.prints = &prints;
+  ReadySceneJob ready(session, options, launch);
+  pipeline::RenderJob& job = ready.job;
   report::RunDirectory directory(
       launch.out.empty() ? fmt::format("out/{}_{}-{}", job.scene.name, options.shader, launch.mode)
                          : launch.out);

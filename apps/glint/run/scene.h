@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "apps/glint/options/frame_options.h"
@@ -9,6 +10,7 @@
 #include "apps/glint/run/launch_options.h"
 #include "apps/glint/session.h"
 #include "pipeline/render.h"
+#include "pipeline/structure_cache.h"
 #include "report/files/run_directory.h"
 
 namespace glint::app {
@@ -32,9 +34,19 @@ void check_scene(SceneOptions& options);
 // Loads the scene and returns the frame that the options ask for, without a machine.
 pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads);
 
-// Returns the same with its machine.
-pipeline::RenderJob scene_job(const Session& session, const SceneOptions& options,
-                              const LaunchOptions& launch);
+// Holds such a job with its machine, ready to run, and what it refers to: caches of shaders and structures,
+// and what shaders print.
+struct ReadySceneJob {
+  ReadySceneJob(const Session& session, const SceneOptions& options, const LaunchOptions& launch);
+  ReadySceneJob(const ReadySceneJob&) = delete;
+  ReadySceneJob& operator=(const ReadySceneJob&) = delete;
+
+  const std::unique_ptr<frontend::ShaderCache> shaders;
+  const std::unique_ptr<pipeline::StructureCache> structures;
+  exec::PrintLog prints;
+  pipeline::RenderJob job;
+};
+
 // Returns what run.json says of the job, and the title of its summary.
 report::RunInfo describe_scene(const Session& session, const SceneOptions& options,
                                const LaunchOptions& launch, const pipeline::RenderJob& job);

@@ -19,6 +19,7 @@
 #include "apps/glint/options/image_size.h"
 #include "apps/glint/options/output.h"
 #include "apps/glint/options/suggest.h"
+#include "compute/program.h"
 #include "report/files/config_file.h"
 #include "scenes/scene.h"
 #include "setup/config.h"
@@ -65,25 +66,34 @@ void check_options(const Session& session, const Point& point) {
   const ParseOutcome outcome = line.parse(int(pointers.size()), pointers.data());
   if (outcome.is_done) throw UserError("--help and --version ask for texts, and a point is a run");
   if (!outcome.error.empty()) throw UserError({}, outcome.error, suggestion(line.command(), words));
+  nested.check();
 }
 
-// Refuses a workload that is neither a file nor the name of a scene.
+// Refuses a workload that is neither a file nor the name of a scene or a program.
 void check_workload(const std::string& workload) {
   std::error_code failed;
-  if (fs::is_regular_file(workload, failed)) return;
+  if (fs::is_regular_file(workload, failed) || compute::find_program(workload)) return;
   const std::optional<SceneAndShader> named = split_workload(workload);
   const std::string scene = named ? named->scene : workload;
   std::vector<std::string> names;
   for (const scenes::SceneInfo& info : scenes::scene_list()) names.emplace_back(info.name);
+  for (const compute::Program& program : compute::all_programs()) names.emplace_back(program.name);
   if (std::find(names.begin(), names.end(), scene) != names.end()) return;
   const std::string guess = nearest(scene.substr(0, scene.rfind('_')), names);
-  throw UserError(
-      {}, fmt::format("there is neither a file nor a scene '{}'", workload),
-      guess.empty() ? "'glint list scenes' names the scenes" : fmt::format("did you mean '{}'?", guess));
+  throw UserError({}, fmt::format("there is neither a file, a scene nor a compute program '{}'", workload),
+                  guess.empty() ? "'glint list scenes' and 'glint list programs' name them"
+                                : fmt::format("did you mean '{}'?", guess));
 }
 
 // Adds the estimates of memory in bytes and of relative time.
 void add_estimates(const Point& point, Json& answer) {
+  const bool timing = point.value_of("--mode", "timing") == "timing";
+  if (const compute::Program* const program = compute::find_program(point.workload)) {
+    const bool small = std::ranges::find(point.options, "--small") != point.options.end();
+    answer["memory"] = memory_estimate(*program, small);
+    answer["weight"] = time_weight(*program, small, timing);
+    return;
+  }
   scenes::RenderParams frame;
   parse_size(point.value_of("--size", "128x128"), frame);
   parse_crop(point.value_of("--crop", ""), frame);
@@ -91,7 +101,6 @@ void add_estimates(const Point& point, Json& answer) {
   const std::string shader = named ? named->shader : point.value_of("--shader", "pt");
   const NamedWorkload workload{named ? named->scene : point.workload, shader};
   const uint64_t pixels = uint64_t{frame.width} * frame.height;
-  const bool timing = point.value_of("--mode", "timing") == "timing";
   const uint64_t samples = std::stoull(point.value_of("--spp", "2"));
   answer["memory"] = memory_estimate(workload, pixels, !point.value_of("--assets", "").empty());
   answer["weight"] = time_weight(workload, timing, pixels, samples);
@@ -106,8 +115,8 @@ std::string name_of(const std::string& values) {
 
 Json answer_to(const Session& session, const Point& point) {
   Json answer;
-  check_options(session, point);
   check_workload(point.workload);
+  check_options(session, point);
   const std::vector<ParamInfo> infos = describe_params(setup::read_preset(
       session.resources, point.config, setup::with_oracles(point.oracles, point.settings)));
   answer["config"] = name_of(report::config_key_values(infos));
@@ -134,10 +143,13 @@ Json answer_to_line(const Session& session, const std::string& line) {
 }  // namespace
 
 void describe_points(const Session& session, std::istream& points) {
+  std::vector<std::string_view> programs;
+  for (const compute::Program& program : compute::all_programs()) programs.push_back(program.name);
   const Json head = {{"version", GLINT_VERSION},
                      {"git", GLINT_GIT},
                      {"shaders", fmt::format("{:016x}", hash_of_shaders(session.resources))},
                      {"plugins", identity_of(session.plugins)},
+                     {"programs", programs},
                      {"available_memory", available_memory()}};
   print_output("{}\n", head.dump());
   // Points of a sweep differ in few things, so that most command lines have been looked at before.

@@ -54,7 +54,7 @@ def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
 
     A point has `index`, `id`, `workload`, `config`, `set` (texts by key), `seed`, `options`, `design`, and the estimates `memory` (bytes) and `weight`.
     """
-    raw = _raw(definition)
+    raw = _raw(definition, program)
     kept = _within_constraints(definition, program, raw)
     if not kept:
         raise SweepError("the sweep has no points" + (f": its constraints leave none of {len(raw)}" if raw else ""))
@@ -79,12 +79,12 @@ def words_of(point: dict[str, Any], definition: Definition) -> list[str]:
     return ["run", point["workload"], f"--config={point['config']}", *oracles, *settings, *point["options"], f"--stats={definition.stats}"]
 
 
-def _raw(definition: Definition) -> list[dict[str, Any]]:
+def _raw(definition: Definition, program: Program) -> list[dict[str, Any]]:
     """Returns workloads x configurations x points of designs x seeds. The points of a design stay together, because samples are read as a whole."""
     found = []
     chosen = definition.settings_of_points()
     for workload, config, (design, settings), seed in itertools.product(definition.workloads, definition.configs, chosen, definition.seeds):
-        takes_seed = _takes_seed(workload)
+        takes_seed = _takes_seed(workload, program)
         if not takes_seed and seed != definition.seeds[0]:
             continue  # Only scenes have a seed.
         options = sorted([*definition.options, *([f"--seed={seed}"] if takes_seed else [])])
@@ -93,8 +93,8 @@ def _raw(definition: Definition) -> list[dict[str, Any]]:
     return found
 
 
-def _takes_seed(workload: str) -> bool:
-    return pathlib.PurePath(workload).suffix.lower() in ("", ".obj", ".gltf", ".glb")
+def _takes_seed(workload: str, program: Program) -> bool:
+    return workload not in program.facts["programs"] and pathlib.PurePath(workload).suffix.lower() in ("", ".obj", ".gltf", ".glb")
 
 
 def text_of(key: str, value: Any) -> str:

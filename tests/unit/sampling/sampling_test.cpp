@@ -44,7 +44,8 @@ TEST_CASE("A sample has the share that was asked for, and every block has one pl
   const SamplePlan plan = plan_sample({.share = 0.05, .seed = 3}, 8192, 42, 4);
   CHECK(plan.timed.size() >= 400);
   CHECK(plan.timed.size() <= 410);
-  CHECK(plan.starts.size() == 10);
+  CHECK(plan.starts.size() == 11);  // what fills the machine, and ten segments
+  CHECK(plan.starts[1] == 63);      // a wave and a half
   CHECK(std::ranges::is_sorted(plan.timed));
   CHECK(std::ranges::is_sorted(plan.warm, {}, &WarmBlock::block));
   std::set<uint32_t> blocks(plan.timed.begin(), plan.timed.end());
@@ -52,12 +53,36 @@ TEST_CASE("A sample has the share that was asked for, and every block has one pl
   CHECK(blocks.size() == plan.timed.size() + plan.warm.size());
   CHECK(*blocks.rbegin() < 8192);
   CHECK(plan.timed.size() + plan.sizes[0] + plan.sizes[1] + plan.sizes[2] == 8192);
-  // Of the others in a segment all run, in front of it a half, and elsewhere an eighth.
+  CHECK(plan.num_functional() == plan.warm.size());
+  // Of the others in a segment all run, in front of it a third, and elsewhere a twelfth.
   std::array<size_t, 3> run{};
   for (const WarmBlock& warm : plan.warm) ++run[size_t(warm.stratum)];
   CHECK(run[0] == plan.sizes[0]);
-  CHECK(std::abs(double(run[1]) / plan.sizes[1] - 0.5) < 0.05);
-  CHECK(std::abs(double(run[2]) / plan.sizes[2] - 0.125) < 0.02);
+  CHECK(std::abs(double(run[1]) / plan.sizes[1] - 1.0 / 3) < 0.05);
+  CHECK(std::abs(double(run[2]) / plan.sizes[2] - 1.0 / 12) < 0.02);
+}
+
+TEST_CASE("The first segment lies behind blocks that fill the machine, and the last one before others",
+          "[sampling]") {
+  const SamplePlan plan = plan_sample({.share = 0.05, .seed = 3}, 8192, 42, 4);
+  const size_t length = plan.starts[2] - plan.starts[1];
+  CHECK(plan.timed.size() - plan.starts.back() == length + 21);             // half a wave more
+  CHECK(plan.timed[plan.starts[1]] - plan.timed[plan.starts[1] - 1] <= 7);  // They are neighbours.
+}
+
+TEST_CASE("Surveyed blocks are neither timed nor run a second time", "[sampling]") {
+  for (const uint32_t scale : {1u, 4u}) {
+    const SampleOptions options{.share = 0.05, .seed = 3, .by = "cost"};
+    Survey survey = survey_for(options);
+    REQUIRE(survey.step > 0);
+    for (uint32_t block = survey.first; block < 8192; block += survey.step) survey.costs.push_back(block);
+    const SamplePlan plan = plan_sample(options, 8192, 42, scale, survey);
+    for (const uint32_t block : plan.timed) REQUIRE_FALSE(survey.has(block));
+    for (const WarmBlock& warm : plan.warm) REQUIRE_FALSE(survey.has(warm.block));
+    CHECK(plan.sizes[size_t(Stratum::Surveyed)] == survey.costs.size());
+    CHECK(plan.timed.size() + plan.sizes[0] + plan.sizes[1] + plan.sizes[2] + plan.sizes[3] == 8192);
+  }
+  CHECK(survey_for({.by = "position"}).step == 0);
 }
 
 TEST_CASE("Equal seeds choose equal blocks, and other seeds choose others", "[sampling]") {
@@ -102,6 +127,26 @@ TEST_CASE("Cycles are those of the sample and, for the work that it lacks, those
   CHECK(find(all, "l1_hit_rate").value == 0.5);
   CHECK(find(all, "cycles").low < 6000);
   CHECK(find(all, "cycles").high > 6000);
+}
+
+TEST_CASE("The use of DRAM has the writes that a sample leaves to be done", "[sampling]") {
+  SamplePlan plan;
+  plan.num_blocks = 40, plan.scale = 2, plan.sizes = {0, 0, 30};
+  const auto utilisation = [&](DramTraffic traffic) {
+    SampleCounts counts = counts_of(plan, {1000, 1000, 1000});
+    counts.work[size_t(Stratum::Rest)] = {{0, 30}, {0, 30}};  // The launch has four times the sample's work.
+    counts.total[size_t(BatchCount::DramClocks)] = 1000;
+    counts.total[size_t(BatchCount::DramBusy)] = 100;
+    for (size_t i = 0; i < counts.total.size(); ++i) counts.half[i] = counts.total[i] / 2;
+    counts.traffic = traffic;
+    return find(estimate(counts), "dram_utilisation").value;
+  };
+  // 25 requests took 100 clocks.
+  CHECK(utilisation({.reads = 25, .writes = 0, .unwritten = 0, .l2 = 10}) == Approx(0.1));
+  // The second half of the sample makes 50 writes, and the launch 400, of which an L2 of 600 holds all.
+  CHECK(utilisation({.reads = 25, .writes = 0, .unwritten = 50, .l2 = 600}) == Approx(0.1));
+  // Of 400 writes and 200 reads an L2 of 60 holds a tenth: of each 100 writes 90 follow, with 4 clocks each.
+  CHECK(utilisation({.reads = 25, .writes = 0, .unwritten = 50, .l2 = 60}) == Approx(0.1 + 0.36));
 }
 
 TEST_CASE("An interval grows with the scatter of the batches and with that of the work", "[sampling]") {
