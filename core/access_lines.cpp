@@ -66,7 +66,7 @@ void AccessLines::collect_memory(MemoryAccess& access, const exec::WarpContext& 
                                                               : mem::Traffic::ShaderGlobal;
   access.atomic = is_atomic;
   if (const LaneMask lanes = executor_.lanes_in(Space::Shared))
-    access.passes = shared_passes(addresses, lanes, bytes, is_atomic);
+    access.passes = shared_passes(addresses, lanes, bytes, is_atomic && !access.merges_lanes);
   const LaneMask in_global = executor_.lanes_in(Space::Global);
   if (params_.lsu.bank_conflicts && !is_atomic && in_global)
     access.bank_turns = shared_passes(addresses, in_global, bytes, false);

@@ -26,10 +26,27 @@ uint64_t IssueStage::leave_out_bank_conflicts(Scheduler& scheduler, uint64_t rea
   return ready;
 }
 
+// Finds what the operands of the warp's next instruction add to its sequence. They have to be read before
+// the instruction is executed, because its result may take the register of one of them.
+void IssueStage::look_for_slow_path(const exec::WarpContext& warp, const IssueRow& row) {
+  const isa::Inst& inst = core_.executor.next(warp);
+  LaneMask lanes = warp.simt.active;
+  if (inst.guard != isa::kNoGuard) {
+    const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
+    lanes &= inst.guard & isa::kGuardNegate ? ~guard : guard;
+  }
+  slow_ = slow_time(row.slow_path, warp.regs, inst, lanes);
+}
+
 void IssueStage::start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now) {
-  const uint32_t issues = core_.table.issues(pc);
-  const Cycle step = row.is_whole ? std::max<Cycle>(row.latency / issues, 1) : 1;
-  at.sequence = {issues - 1, pc, step, row.latency - (issues - 1) * step};
+  uint32_t issues = core_.table.issues(pc);
+  Cycle latency = row.latency, step = 1;
+  if (row.is_whole) {
+    issues += slow_.issues;
+    latency += slow_.latency;
+    step = std::max<Cycle>(latency / issues, 1);
+  }
+  at.sequence = {issues - 1, pc, step, latency - (issues - 1) * step};
   at.front = {now + step, row.wait};
 }
 
@@ -60,7 +77,7 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
   if (row.pipe == Pipe::Const && units_.constants.is_timed() && issued.lanes)
     return units_.constants.start(slot, row, issued, now);
   WarpSlot& at = core_.warps[slot];
-  core_.counts.end(issued.pc, late + row.latency);
+  core_.counts.end(issued.pc, late + row.latency + (row.is_whole ? slow_.latency : 0));
   if (row.is_sequence)
     start_sequence(at, row, issued.pc, now);
   else
@@ -128,6 +145,8 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
   if (at.sequence.is_under_way()) return issue_rest(slot, now);
   Scheduler& scheduler = *at.scheduler;
   const IssueRow& row = core_.table.row(at.warp.simt.pc);
+  if (row.is_whole) [[unlikely]]
+    look_for_slow_path(at.warp, row);
   const exec::Issued issued = core_.executor.execute(at.warp, now);
   if (core_.executor.fault()) {
     fault_ = core_.executor.fault();

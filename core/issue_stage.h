@@ -36,6 +36,7 @@ class IssueStage {
   void issue(uint32_t slot, Cycle now);
   void hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
   void finish_fixed(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
+  void look_for_slow_path(const exec::WarpContext& warp, const IssueRow& row);
   void start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now);
   void prepare_next(WarpSlot& at, Cycle now);
   void issue_rest(uint32_t slot, Cycle now);
@@ -49,6 +50,7 @@ class IssueStage {
   const Units units_;
   const Doors doors_;
   std::optional<exec::Fault> fault_;
+  SlowTime slow_;  // what the operands of the last whole instruction add to it
 };
 
 }  // namespace glint::core

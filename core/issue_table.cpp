@@ -78,6 +78,16 @@ void take_time(IssueRow& row, const OpTime& time) {
   row.alternates = time.alternates;
   row.is_sequence = time.issues > 1;
   row.is_whole = time.whole;
+  row.slow_path = time.slow_path;
+}
+
+// Returns whether the instruction adds the constant one to words of shared memory and returns nothing.
+// Hopper's assembler has an instruction of its own for that.
+bool counts_up(const isa::OpRow& op, const isa::Inst& inst, const exec::Image& image) {
+  if (op.name != "red.shared.add.u32" && op.name != "red.shared.add.s32") return false;
+  const isa::Slot addend = inst.operand[1];
+  return addend >> isa::kBankShift == isa::kConstantBank >> isa::kBankShift &&
+         image.constants.get()[size_t(addend & isa::kSlotIndexMask) * kLanes] == 1;
 }
 
 Door door_of(const IssueRow& row, const TextureParams& texture) {
@@ -151,6 +161,7 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     if (time) take_time(row, *time);
     issues_.push_back(uint8_t(time ? time->issues : 1));
     if (op.effect == Effect::Atomic) row.atomic = isa::AtomicKind(op.detail);
+    row.merges_lanes = params.shared.merges_counts && counts_up(op, inst, image);
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
     row.door = door_of(row, params.texture);
     rows_.push_back(row);

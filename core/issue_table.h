@@ -51,6 +51,8 @@ struct alignas(32) IssueRow {
   bool is_sequence : 1 = false;     // IssueTable::issues() is more than 1
   bool is_whole : 1 = false;        // OpTime::whole
   isa::AtomicKind atomic : 2 = isa::AtomicKind::Integer;
+  SlowPath slow_path = SlowPath::None;
+  bool merges_lanes = false;  // lanes that meet in a word of shared memory take one turn
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle
   // These are the first of the registers that have to be ready, and the first destination. Most instructions

@@ -146,7 +146,8 @@ Cycle Lsu::texture_cycles(const MemoryAccess& access) const {
 }
 
 Cycle Lsu::shared_cycles(const MemoryAccess& access) const {
-  return access.atomic ? 1 + (access.passes - 1) * Cycle{shared_.atomic_pass} : access.passes;
+  return access.atomic && !access.merges_lanes ? 1 + (access.passes - 1) * Cycle{shared_.atomic_interval}
+                                               : access.passes;
 }
 
 // Returns the latency in shared memory. Model: turns of a compare-and-swap or a floating-point addition keep
@@ -195,8 +196,10 @@ bool Lsu::send_line(Cycle now, size_t p) {
     const LineSectors& line = lines[access.num_sent];
     const mem::Traffic traffic =
         access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
+    mem::AtomicLanes atomic = line.atomic;
+    atomic.adds_floats = access.atomic_kind == isa::AtomicKind::FloatAdd;
     if (!l1_.access(now, mem::Client::Lsu,
-                    {line.line, line.sectors, access.write, traffic, id, line.words, line.atomic}))
+                    {line.line, line.sectors, access.write, traffic, id, line.words, atomic}))
       break;
     ++access.num_sent;
     cycles = std::max<uint32_t>(cycles, sector_cycles_[mem::num_sectors(line.sectors)]);
@@ -206,6 +209,8 @@ bool Lsu::send_line(Cycle now, size_t p) {
   door_free = now + cycles;
   if (access.num_sent == lines.size()) {
     pipe.ids.pop();
+    if (access.traffic == mem::Traffic::ShaderAtomic)
+      door_free = now + std::max<Cycle>(cycles, params_.atomic_interval);
     if (access.write) completed_.push_back(id);
   }
   return true;

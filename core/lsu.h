@@ -30,6 +30,7 @@ struct MemoryAccess {
   bool texture = false;  // It goes through the texture unit.
   uint32_t samples = 0;  // number of samples of up to four texels; 0 unless `texture`
   bool atomic = false;   // an atomic that shared memory does, if the word is there
+  bool merges_lanes = false;  // the lanes of an atomic that meet in a word of shared memory take one turn
   isa::AtomicKind atomic_kind = isa::AtomicKind::Integer;
   uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where banks count
   uint32_t passes = 0;      // passes of shared memory; a generic access may go there and to lines

@@ -32,6 +32,7 @@ bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issue
   // Nobody waits for the answer of a red.
   access.write |= issued.row->effect == Effect::Atomic && row.num_defs == 0;
   access.atomic_kind = row.atomic;
+  access.merges_lanes = row.merges_lanes;
   lines_.collect(access, at.warp, issued);
   const bool reaches_l1 = !access.lines.lines().empty();
   Pending& pending = pending_[slot];

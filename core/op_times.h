@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/registry.h"
+#include "core/slow_paths.h"
 #include "isa/op_row.h"
 
 namespace glint::core {
@@ -26,6 +27,7 @@ struct OpTime {
   // its slots are spread over the latency. The parts of other ops issue as early as they can, because an
   // assembler fills the gaps between them with the instructions that follow.
   bool whole = false;
+  SlowPath slow_path = SlowPath::None;  // what rare operands add; only whole ops have one
 
   static constexpr uint32_t kParts = 16;  // parts of a cycle
 };

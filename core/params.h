@@ -105,6 +105,7 @@ struct LsuParams {
   // a load from shared memory 9 cycles after it.
   uint32_t war_latency = 11, shared_war_latency = 9;
   uint32_t atomic_latency = 0;  // H200: 204; 0, because that of other parts is unpublished
+  uint32_t atomic_interval = 0;  // H100: 15; 0, because that of other parts is unpublished
   bool atomic_turns = false;    // H200: true; false, because that of other parts is unpublished
   uint32_t merged_lines = 0;    // H100: 4; 0, because that of other parts is unpublished
   bool holds_operands() const { return war_latency + shared_war_latency > 0; }
@@ -133,6 +134,10 @@ struct LsuParams {
               0, 1000),
         param(&LsuParams::atomic_latency, "atomic_latency", "cycle",
               "Extra cycles from an atomic on global memory to its result, compared with a load.", 0, 10000),
+        param(&LsuParams::atomic_interval, "atomic_interval", "cycle",
+              "Cycles that an atomic on global memory keeps the way to the L1 busy. 0: it takes as long as a "
+              "store.",
+              0, 1000),
         flag(&LsuParams::atomic_turns, "atomic_turns",
              "True: lanes of an atomic that meet in a word of global memory take turns there. False: each "
              "sector has one turn."),
@@ -206,6 +211,8 @@ struct SharedParams {
   uint32_t latency = 23;         // dependent loads
   uint32_t atomic_latency = 76;  // dependent atom.shared.add.u32; 126 when 32 lanes meet in a word
   uint32_t atomic_pass = 2, atomic_hidden = 0;
+  uint32_t atomic_interval = 2;  // H200: 1
+  bool merges_counts = false;    // H200: true
   AtomicParams swap, float_add;
   uint32_t conflict_turn = 1, conflict_hidden = 0;
   static ParamList params() {
@@ -219,7 +226,12 @@ struct SharedParams {
               "instruction.",
               1, 1000),
         param(&SharedParams::atomic_pass, "atomic_pass", "cycle",
-              "Cycles that each further turn of an atomic takes, when lanes meet in a bank.", 1, 100),
+              "Extra cycles of latency for each further turn of an atomic, when lanes meet in a bank.", 1, 100),
+        param(&SharedParams::atomic_interval, "atomic_interval", "cycle",
+              "Cycles that each further turn of an atomic keeps shared memory busy.", 1, 100),
+        flag(&SharedParams::merges_counts, "merges_counts",
+             "True: lanes that add the constant one to the same word, and read no old value, take one turn. "
+             "False: each takes a turn of its own."),
         param(&SharedParams::atomic_hidden, "atomic_hidden", "cycle",
               "Cycles of the further turns' latency, in total, that the latency of an atomic without "
               "conflicts hides.",

@@ -139,7 +139,7 @@ struct L2Params {
   uint32_t dram_queue = 64;  // Vulkan-Sim: dram_partition_queues
   // Choice: vendors do not publish it. An H200 takes 2 cycles, and 1/8 cycle per lane (docs/validation.md).
   double atomic_interval = 2;
-  double atomic_lane_interval = 0, atomic_answer_interval = 0;
+  double atomic_whole_interval = 0, atomic_float_interval = 0, atomic_lane_interval = 0, atomic_answer_interval = 0;
   // A write takes 1.25 cycles on an H200, with one more for each whole sector and 1.31 for each sector that
   // is written in part (docs/validation.md).
   double write_visit = 0;
@@ -176,6 +176,14 @@ struct L2Params {
               "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns, in "
               "steps of 1/16.",
               1.0, 1000.0),
+        param(&L2Params::atomic_whole_interval, "atomic_whole_interval", "cycle",
+              "Slice cycles per turn of an atomic whose turns all have eight words of a sector, in steps of "
+              "1/16. 0: these are as long as others.",
+              0.0, 1000.0),
+        param(&L2Params::atomic_float_interval, "atomic_float_interval", "cycle",
+              "Slice cycles per turn of an addition of single or double precision, in steps of 1/16. 0: they "
+              "are those of other atomics.",
+              0.0, 1000.0),
         param(&L2Params::atomic_lane_interval, "atomic_lane_interval", "cycle",
               "Extra slice cycles per lane of an atomic, in steps of 1/16.", 0.0, 1000.0),
         param(&L2Params::atomic_answer_interval, "atomic_answer_interval", "cycle",

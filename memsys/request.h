@@ -83,6 +83,7 @@ constexpr WordMask words_of_sector(uint32_t sector, uint32_t line_bytes) {
 struct AtomicLanes {
   uint8_t lanes = 0;
   uint8_t turns = 0;  // turns of all its sectors together; 0 stands for one turn in each sector
+  bool adds_floats = false;
 };
 
 struct Request {

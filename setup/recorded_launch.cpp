@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "memsys/peak.h"
+#include "setup/build_commit.h"
 #include "setup/config.h"
 
 namespace glint::setup {
@@ -16,7 +17,7 @@ report::RunInfo new_run_info(const pipeline::GpuParams& gpu, const std::string& 
                              const std::string& mode) {
   report::RunInfo info;
   info.version = GLINT_VERSION;
-  info.git = GLINT_GIT;
+  info.git = build_commit();
   info.compiler = __VERSION__;
   info.config = config;
   info.config_hash = config_hash(gpu);

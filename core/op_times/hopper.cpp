@@ -92,9 +92,11 @@ constexpr OpTime kTimes[] = {
     {"fma.rn*.f16x2", 8, 1},
     {"fma.rn*.bf16x2", 8, 1},
     // These are sequences around the special-function unit.
-    {"div.rn*.f32", 57, 17, Unit::Count, false, 10, true},
-    {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10, true},
-    {"sqrt.rn*.f32", 55, 11, Unit::Count, false, 11, true},
+    {"div.rn.f32", 57, 17, Unit::Count, false, 10, true, SlowPath::DivF32},
+    {"div.rn.ftz.f32", 57, 17, Unit::Count, false, 10, true, SlowPath::DivFtzF32},
+    {"rcp.rn*.f32", 77, 12, Unit::Count, false, 10, true, SlowPath::RcpF32},
+    {"sqrt.rn.f32", 55, 11, Unit::Count, false, 11, true, SlowPath::SqrtF32},
+    {"sqrt.rn.ftz.f32", 55, 11, Unit::Count, false, 11, true, SlowPath::SqrtFtzF32},
     {"rcp.approx.f32", 41, 8.5625, Unit::Count, false, 7},
     {"rsqrt.approx.f32", 39, 8, Unit::Count, false, 4},
     {"lg2.approx.f32", 39, 8, Unit::Count, false, 4},
@@ -111,9 +113,9 @@ constexpr OpTime kTimes[] = {
     {"rcp.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"rsqrt.approx.ftz.f64", 17, 8, Unit::Sfu},
     {"fma.r*.f64", 8, 2.1875},  // three operands of 64 bits, so reads of registers hold it up
-    {"div.r*.f64", 124, 26, Unit::Count, false, 16, true},
-    {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15, true},
-    {"rcp.rn.f64", 92, 20, Unit::Count, false, 11, true},  // guess
+    {"div.r*.f64", 124, 26, Unit::Count, false, 16, true, SlowPath::DivF64},
+    {"sqrt.rn.f64", 92, 28, Unit::Count, false, 15, true, SlowPath::SqrtF64},
+    {"rcp.rn.f64", 92, 20, Unit::Count, false, 11, true, SlowPath::RcpF64},  // guess
     // These are conversions.
     {"cvt.rn.f32.s32", 4, 2, Unit::Int},
     {"cvt.rn.f32.u32", 4, 2, Unit::Int},

@@ -23,6 +23,8 @@ L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, 
       visit_parts_(parts_of(params.l2.write_visit, kParts)),
       partial_parts_(parts_of(params.l2.partial_interval, kParts)),
       turn_parts_(parts_of(params.l2.atomic_interval, kParts)),
+      whole_parts_(parts_of(params.l2.atomic_whole_interval, kParts)),
+      float_parts_(parts_of(params.l2.atomic_float_interval, kParts)),
       lane_parts_(parts_of(params.l2.atomic_lane_interval, kParts)),
       answer_parts_(parts_of(params.l2.atomic_answer_interval, kParts)),
       line_bytes_(params.line),
@@ -147,7 +149,10 @@ void L2Slice::serve(Cycle now) {
 Cycle L2Slice::service_parts(const Packet& packet) const {
   if (!is_atomic(packet)) return sector_cycles(packet.sectors) * kParts;
   const Cycle lane = packet.write ? lane_parts_ : lane_parts_ + answer_parts_;
-  return num_turns(packet) * turn_parts_ + packet.atomic.lanes * lane;
+  const Cycle turns = num_turns(packet);
+  const bool is_float = float_parts_ > 0 && packet.atomic.adds_floats;
+  const bool is_whole = whole_parts_ > 0 && packet.atomic.lanes == turns * (kSectorBytes / 4);
+  return turns * (is_float ? float_parts_ : is_whole ? whole_parts_ : turn_parts_) + packet.atomic.lanes * lane;
 }
 
 // Keeps the slice busy with a packet. Writes may take parts of cycles: a packet that waited for the one

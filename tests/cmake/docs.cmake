@@ -1,4 +1,5 @@
-# Adds tests of the documentation: every command and program in it runs, and the site is built from it.
+# Adds tests of the documentation: every command and program in it runs, its figures are those of its tables, and the
+# site is built from it.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite Commands Programs Inline Policy Files Harness)

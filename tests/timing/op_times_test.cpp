@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/op_times.h"
 
+#include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 #include "isa/op_row.h"
@@ -181,6 +184,84 @@ TEST_CASE("a warp issues nothing before the end of an op with a slow path, and f
   };
   CHECK(two("rsqrt.approx.f32") == 8);  // the interval of the pipe
   CHECK(two("sqrt.rn.f32") > 40);
+}
+
+TEST_CASE("a lane with rare operands makes its warp's division or root longer, as an H100 does") {
+  // Returns the cycles until an instruction behind the op can issue, and the issue slots of the op, when the
+  // operands are a and b in lanes below `lanes` and 3 and 7 elsewhere. With `leaves_out` these lanes do not
+  // execute it.
+  const auto run = [](const char* op, float a, float b, uint32_t lanes, bool leaves_out = false) {
+    const uint8_t guard = leaves_out ? isa::kGuardNegate : isa::kNoGuard;
+    Code code;
+    code.add("setp.lt.u32", {0, special(isa::Special::LaneId), code.constant(lanes)});
+    const auto operand = [&](int at, float rare, float usual) {
+      code.add("selp.b32", {reg(at), code.constant(std::bit_cast<uint32_t>(rare)),
+                            code.constant(std::bit_cast<uint32_t>(usual)), 0});
+    };
+    operand(2, a, 3.0f);
+    operand(3, b, 7.0f);
+    if (std::string_view(op).starts_with("div"))
+      code.add(op, {reg(1), reg(2), reg(3)}, 0, guard);
+    else
+      code.add(op, {reg(1), reg(2)}, 0, guard);
+    code.add("add.u32", {reg(4), reg(1), reg(1)});
+    code.add("exit");
+    OneCore one(code, hopper_params(), {});
+    const Cycle end = one.run();
+    return std::pair(end, one.stats().sequence_slots.value());
+  };
+  const float subnormal = 1e-40f, infinity = std::numeric_limits<float>::infinity();
+  const auto added = [&](const char* op, float a, float b, uint32_t lanes) {
+    const auto [usual, slots] = run(op, 3, 7, lanes);
+    const auto [rare, more] = run(op, a, b, lanes);
+    return std::pair(int(rare - usual), int(more - slots));
+  };
+  // Recorded on an H100: chains of one op, one lane with the operands and 31 with 3 and 7, then all 32.
+  CHECK(added("div.rn.f32", 0, 7, 1) == std::pair(321 - 98, 34));
+  CHECK(added("div.rn.f32", 0, 7, 32).first == 304 - 98);
+  CHECK(added("div.rn.f32", subnormal, 7, 1).first == 577 - 98);
+  CHECK(added("div.rn.f32", 3, infinity, 1).first == 321 - 98);
+  CHECK(added("div.rn.f32", 1e-37f, 1e-2f, 1).first == 351 - 98);
+  CHECK(added("div.rn.f32", 1e-2f, 1e30f, 1).first == 0);
+  CHECK(added("sqrt.rn.f32", 0, 0, 1).first == 220 - 97);
+  CHECK(added("sqrt.rn.f32", -1, 0, 32).first == 209 - 97);
+  CHECK(added("sqrt.rn.f32", 1e30f, 0, 1).first == 0);
+  CHECK(added("rcp.rn.f32", 1e38f, 0, 1).first == 379 - 118);
+  CHECK(added("rcp.rn.f32", subnormal, 0, 32).first == 260 - 118);
+  CHECK(run("div.rn.f32", 0, 7, 1, true) == run("div.rn.f32", 3, 7, 1, true));
+  // A double's numerator is two registers.
+  Code code;
+  code.add("div.rn.f64", {reg(2), code.constant64(0), code.constant64(std::bit_cast<uint64_t>(7.0))});
+  code.add("exit");
+  OneCore zero(code, hopper_params(), {});
+  zero.run();
+  CHECK(zero.stats().sequence_slots.value() == 15 + 64);
+}
+
+TEST_CASE("lanes that add the constant one to a word of shared memory take one turn where hardware counts") {
+  constexpr int kAtomics = 8;
+  const auto run = [](bool merges, uint32_t interval, uint32_t addend, bool in_register) {
+    Params params = hopper_params();
+    params.shared.merges_counts = merges;
+    params.shared.atomic_interval = interval;
+    Code code;
+    code.add("mov.b32", {reg(1), code.constant(0)});
+    code.add("mov.b32", {reg(2), code.constant(addend)});
+    for (int i = 0; i < kAtomics; ++i)
+      code.add("red.shared.add.u32", {reg(1), in_register ? reg(2) : code.constant(addend)});
+    code.add("exit");
+    return OneCore(code, params, {.block_threads = 32, .shared_bytes = 64}).run();
+  };
+  const Cycle counting = run(true, 1, 1, false);
+  for (const uint32_t interval : {1u, 2u}) {
+    // All turns but those that the latency of the last one hides are seen.
+    const Cycle turns = run(false, interval, 1, false) - counting, further = kLanes - 1;
+    CHECK(turns >= (kAtomics - 1) * further * interval);
+    CHECK(turns <= kAtomics * further * interval + 2 * further);
+    CHECK(run(true, interval, 1, false) == counting);
+    CHECK(run(true, interval, 2, false) == run(false, interval, 1, false));
+    CHECK(run(true, interval, 1, true) == run(false, interval, 1, true));
+  }
 }
 
 TEST_CASE("the slots of a sequence are taken from the other warps of its scheduler") {

@@ -22,6 +22,7 @@
 #include "compute/program.h"
 #include "report/files/config_file.h"
 #include "scenes/scene.h"
+#include "setup/build_commit.h"
 #include "setup/config.h"
 #include "setup/oracles.h"
 
@@ -146,7 +147,7 @@ void describe_points(const Session& session, std::istream& points) {
   std::vector<std::string_view> programs;
   for (const compute::Program& program : compute::all_programs()) programs.push_back(program.name);
   const Json head = {{"version", GLINT_VERSION},
-                     {"git", GLINT_GIT},
+                     {"git", setup::build_commit()},
                      {"shaders", fmt::format("{:016x}", hash_of_shaders(session.resources))},
                      {"plugins", identity_of(session.plugins)},
                      {"programs", programs},

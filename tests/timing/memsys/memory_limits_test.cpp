@@ -106,6 +106,22 @@ TEST_CASE("lanes of an atomic that take turns take the slice's time for each, an
   CHECK(l2_latency(params, turns) == kL2Hit + 2 * 5 - 1 + 2);
 }
 
+TEST_CASE("a turn of an atomic that has all words of its sector takes its own time") {
+  Params params = bare();
+  params.l2.atomic_interval = 5;
+  params.l2.atomic_whole_interval = 3;
+  for (const uint8_t lanes : {1, 7, 8}) {
+    Request request = atomic(kLine, 1);
+    request.atomic = {.lanes = lanes, .turns = 1};
+    CHECK(l2_latency(params, request) == kL2Hit + (lanes == 8 ? 3 : 5) - 1);
+    request.atomic.adds_floats = true;
+    CHECK(l2_latency(params, request) == kL2Hit + (lanes == 8 ? 3 : 5) - 1);
+    Params slow = params;
+    slow.l2.atomic_float_interval = 7;
+    CHECK(l2_latency(slow, request) == kL2Hit + 7 - 1);
+  }
+}
+
 TEST_CASE("an atomic that returns old values takes its further part of the slice for each lane") {
   Params params = bare();
   params.l2.atomic_interval = 1.5;

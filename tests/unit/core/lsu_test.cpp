@@ -67,6 +67,29 @@ TEST_CASE("a line of three sectors keeps the door for as many cycles as the unit
   }
 }
 
+TEST_CASE("an atomic on global memory keeps the door to the L1 for its own time") {
+  // Returns the cycles between two accesses of one line each.
+  const auto gap = [](mem::Traffic traffic, uint32_t interval) {
+    mem::FixedLatencyMemory memory(kMemoryLatency);
+    Params params;
+    params.lsu.atomic_interval = interval;
+    params.lsu.accept_interval = 1;
+    Lsu lsu(params, memory);
+    for (uint32_t scheduler = 0; scheduler < 2; ++scheduler) {
+      MemoryAccess& access = lsu.take(scheduler, 0);
+      access.write = true;
+      access.traffic = traffic;
+      access.lines.add(4096, 128, 0);
+    }
+    const std::vector<Cycle> ends = completions(lsu, 1);
+    return ends.at(1) - ends.at(0);
+  };
+  const Cycle usual = gap(mem::Traffic::ShaderGlobal, 0);
+  CHECK(gap(mem::Traffic::ShaderAtomic, 0) == usual);
+  CHECK(gap(mem::Traffic::ShaderAtomic, 15) == 15);
+  CHECK(gap(mem::Traffic::ShaderGlobal, 15) == usual);
+}
+
 TEST_CASE("accesses of one scheduler leave its queue at the interval of its address generation") {
   mem::FixedLatencyMemory memory(kMemoryLatency);
   Params params;
