@@ -60,7 +60,7 @@ FIGURES = {
                                         HARDWARE, GLINT, BAND),
     "kernels_unseen": lambda page: scatter(kernels(page, {"h100: kernels unseen": "unseen", "h100: kernels compared blind": "blind",
                                                           "h100: kernels compared later": "later"}),
-                                           "Cycles of kernels that the preset was not fitted to", HARDWARE, GLINT, BAND, names=10),
+                                           "Cycles of kernels that the preset was not fitted to", HARDWARE, GLINT, BAND, names=6),
     "vulkan_sim": lambda page: scatter(vulkan_sim(page), "Cycles of seven frames in Vulkan-Sim and in Glint", "Vulkan-Sim 2.0, cycles",
                                        "Glint, preset vulkan-sim-desktop, cycles", BAND, names=7),
 }
