@@ -97,17 +97,14 @@ struct LsuParams {
   uint32_t accept_interval = 2;
   uint32_t sectors_per_cycle = 2;  // 512 bits per cycle between L1 and registers
   uint32_t accesses = 128;         // Choice: unpublished; 4 per resident warp at 32 warps
-  // An H200 looks up 4 lines per cycle, and reads as many words of a bank as an access wants there, one after
-  // another.
+  // An H200 looks up 4 lines per cycle, and reads the words of a bank one after another.
   uint32_t lines_per_cycle = 1;  // Volta and later: one line of 128 B per cycle
   bool bank_conflicts = false;
-  // By the same paper's table 2, the registers of a load may be overwritten 11 cycles after it, and those of
-  // a load from shared memory 9 cycles after it.
+  // Registers of a load may be overwritten after 11 cycles, those of a shared load after 9 (table 2 there).
   uint32_t war_latency = 11, shared_war_latency = 9;
-  uint32_t atomic_latency = 0;  // H200: 204; 0, because that of other parts is unpublished
-  uint32_t atomic_interval = 0;  // H100: 15; 0, because that of other parts is unpublished
-  bool atomic_turns = false;    // H200: true; false, because that of other parts is unpublished
-  uint32_t merged_lines = 0;    // H100: 4; 0, because that of other parts is unpublished
+  // An H200 has 204 and 15 cycles, merges 4 lines and takes turns. What other parts do is unpublished.
+  uint32_t atomic_latency = 0, atomic_interval = 0, merged_lines = 0;
+  bool atomic_turns = false;
   bool holds_operands() const { return war_latency + shared_war_latency > 0; }
   static ParamList params() {
     return {
@@ -204,15 +201,13 @@ struct AtomicParams {
   }
 };
 
-// Holds the times of shared memory. Defaults: microbenchmarks of an H200, except for the times of conflicts.
-// On an H200, n lanes that meet in a bank keep the unit busy for n cycles and add 2n - 5 cycles of latency: 2
-// for each further turn, less 3 that are hidden.
+// Holds the times of shared memory. Defaults: microbenchmarks of an H200, except for conflicts: there n lanes
+// that meet in a bank keep the unit busy for n cycles and add 2n - 5 cycles of latency.
 struct SharedParams {
   uint32_t latency = 23;         // dependent loads
   uint32_t atomic_latency = 76;  // dependent atom.shared.add.u32; 126 when 32 lanes meet in a word
-  uint32_t atomic_pass = 2, atomic_hidden = 0;
-  uint32_t atomic_interval = 2;  // H200: 1
-  bool merges_counts = false;    // H200: true
+  uint32_t atomic_pass = 2, atomic_hidden = 0, atomic_interval = 2;  // H200: 2, 12 and 1
+  bool merges_counts = false;                                        // H200: true
   AtomicParams swap, float_add;
   uint32_t conflict_turn = 1, conflict_hidden = 0;
   static ParamList params() {
@@ -226,7 +221,8 @@ struct SharedParams {
               "instruction.",
               1, 1000),
         param(&SharedParams::atomic_pass, "atomic_pass", "cycle",
-              "Extra cycles of latency for each further turn of an atomic, when lanes meet in a bank.", 1, 100),
+              "Extra cycles of latency for each further turn of an atomic, when lanes meet in a bank.", 1,
+              100),
         param(&SharedParams::atomic_interval, "atomic_interval", "cycle",
               "Cycles that each further turn of an atomic keeps shared memory busy.", 1, 100),
         flag(&SharedParams::merges_counts, "merges_counts",

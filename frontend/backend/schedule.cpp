@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "frontend/backend/dependences.h"
 #include "frontend/backend/liveness.h"
 #include "frontend/backend/memory_use.h"
 #include "frontend/backend/pressure.h"
@@ -129,48 +130,15 @@ class Run {
     std::vector<Edge> after;
     uint32_t waits_for = 0, waits_now = 0, height = 0, earliest = 0;
   };
-  struct LastAccess {
-    std::vector<size_t> writers, readers;  // writers: the last unguarded write and the guarded ones since
-  };
-
   void depend(size_t from, size_t to, uint32_t delay) {
     nodes_[from].after.push_back({to, delay});
     ++nodes_[to].waits_for;
   }
 
   void add_dependences() {
-    std::vector<std::pair<VirtualRegister, LastAccess>> accesses;  // sorted by register
-    const auto access = [&](VirtualRegister r) -> LastAccess& {
-      const auto at = std::lower_bound(accesses.begin(), accesses.end(), r,
-                                       [](const auto& a, VirtualRegister b) { return a.first < b; });
-      if (at != accesses.end() && at->first == r) return at->second;
-      return accesses.insert(at, {r, {}})->second;
-    };
-    std::vector<std::pair<size_t, MemoryUse>> memory;
-    for (size_t i = 0; i < code_.size(); ++i) {
-      for_each_use(code_[i], [&](VirtualRegister r) {
-        LastAccess& last = access(r);
-        for (size_t w : last.writers)
-          depend(w, i, latency(code_[w]) + (r == code_[i].guard ? guard_latency_ : 0));
-        last.readers.push_back(i);
-      });
-      for_each_def(code_[i], [&](VirtualRegister r) {
-        LastAccess& last = access(r);
-        for (size_t reader : last.readers)
-          if (reader != i) depend(reader, i, 1);
-        for (size_t w : last.writers)
-          if (w != i) depend(w, i, 1);
-        if (!is_guarded(code_[i])) last.writers.clear();
-        last.readers.clear();
-        last.writers.push_back(i);
-      });
-      const MemoryUse use = memory_use(code_[i]);
-      if (!use.any) continue;
-      for (const auto& [earlier, other] : memory)
-        if (must_stay_in_order(other, use))
-          depend(earlier, i, other.writes && !use.writes ? latency(code_[earlier]) : 1);
-      memory.emplace_back(i, use);
-    }
+    const auto latency = [this](const VirtualInst& inst) { return this->latency(inst); };
+    for (const auto& [from, to, delay] : find_dependences(code_, latency, guard_latency_))
+      depend(from, to, delay);
   }
 
   // Model: loads keep their order, as in the listings of an H200's assembler. A load may only overtake one
@@ -361,7 +329,7 @@ class Run {
   const uint32_t guard_latency_;
   const std::vector<bool>* free_;  // by register; null: all registers take room
   std::vector<bool> is_load_;      // by instruction
-  bool holds_back_ = false;  // Everything that takes more room than it frees has the room of loads.
+  bool holds_back_ = false;        // Everything that takes more room than it frees has the room of loads.
   std::optional<ValueNames> names_;
   RegisterSet scheduled_in_, scheduled_out_;  // live_in_ and live_out_, by names where there are some
   std::vector<Node> nodes_;
