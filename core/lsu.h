@@ -27,9 +27,9 @@ struct MemoryAccess {
   Cycle late_until = 0;  // the registers that it fills are not written before this cycle
   mem::Traffic traffic = mem::Traffic::ShaderGlobal;
   bool write = false;
-  bool texture = false;  // It goes through the texture unit.
-  uint32_t samples = 0;  // number of samples of up to four texels; 0 unless `texture`
-  bool atomic = false;   // an atomic that shared memory does, if the word is there
+  bool texture = false;       // It goes through the texture unit.
+  uint32_t samples = 0;       // number of samples of up to four texels; 0 unless `texture`
+  bool atomic = false;        // an atomic that shared memory does, if the word is there
   bool merges_lanes = false;  // the lanes of an atomic that meet in a word of shared memory take one turn
   isa::AtomicKind atomic_kind = isa::AtomicKind::Integer;
   uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where banks count

@@ -14,7 +14,18 @@ namespace glint::core {
 namespace {
 
 // Names a way through a routine. None: the short sequence does it.
-enum class Way : uint8_t { None, NotANumber, Invalid, Zero, Infinite, Long, Rounded, Scaled, ScaledRounded, Count };
+enum class Way : uint8_t {
+  None,
+  NotANumber,
+  Invalid,
+  Zero,
+  Infinite,
+  Long,
+  Rounded,
+  Scaled,
+  ScaledRounded,
+  Count
+};
 
 // Holds the time of a routine. Sources: the machine instructions of each way are counted in the code that
 // nvcc 13.0 makes for sm_90, with the call and the return. The latencies are what a chain of ops takes longer
@@ -37,7 +48,8 @@ constexpr Routine kSqrtF32{
     {{{}, {17, 163}, {14, 143}, {11, 123}, {27, 215}, {27, 217}, {}, {}, {}}}, 9, 61, {4, 31}};
 constexpr Routine kDivF64{
     {{{}, {52, 233}, {56, 262}, {64, 290}, {64, 290}, {59, 254}, {75, 312}, {}, {}}}, 48, 30, {0, 18}};
-constexpr Routine kRcpF64{{{{}, {15, 128}, {}, {19, 147}, {}, {34, 257}, {}, {31, 240}, {}}}, 13, 30, {0, 16}};
+constexpr Routine kRcpF64{
+    {{{}, {15, 128}, {}, {19, 147}, {}, {34, 257}, {}, {31, 240}, {}}}, 13, 30, {0, 16}};
 constexpr Routine kSqrtF64{
     {{{}, {}, {18, 169}, {15, 160}, {21, 199}, {20, 168}, {}, {36, 279}, {}}}, 12, 30, {0, 16}};
 
@@ -153,7 +165,9 @@ SlowTime add_up(const Routine& routine, LaneMask lanes, WayOf&& way_of) {
 SlowTime slow_time(SlowPath path, const isa::Warp& warp, const isa::Inst& inst, LaneMask lanes) {
   const uint32_t* a = warp.read(inst.operand[1]);
   const uint32_t* b = warp.read(inst.operand[2]);
-  const auto wide = [](const uint32_t* row, int lane) { return row[lane] | uint64_t{row[lane + kLanes]} << 32; };
+  const auto wide = [](const uint32_t* row, int lane) {
+    return row[lane] | uint64_t{row[lane + kLanes]} << 32;
+  };
   switch (path) {
     case SlowPath::None:
       return {};

@@ -13,7 +13,17 @@ namespace glint::core {
 // Names a check. An op that rounds correctly is a short sequence with a check, and a branch to a routine that
 // the warp calls if any of its lanes fails.
 // `Ftz`: subnormal operands and results count as zero. Model: these have the times of those without it.
-enum class SlowPath : uint8_t { None, DivF32, DivFtzF32, RcpF32, SqrtF32, SqrtFtzF32, DivF64, RcpF64, SqrtF64 };
+enum class SlowPath : uint8_t {
+  None,
+  DivF32,
+  DivFtzF32,
+  RcpF32,
+  SqrtF32,
+  SqrtFtzF32,
+  DivF64,
+  RcpF64,
+  SqrtF64
+};
 
 // Holds what a routine adds to the short sequence.
 struct SlowTime {

@@ -139,7 +139,8 @@ struct L2Params {
   uint32_t dram_queue = 64;  // Vulkan-Sim: dram_partition_queues
   // Choice: vendors do not publish it. An H200 takes 2 cycles, and 1/8 cycle per lane (docs/validation.md).
   double atomic_interval = 2;
-  double atomic_whole_interval = 0, atomic_float_interval = 0, atomic_lane_interval = 0, atomic_answer_interval = 0;
+  double atomic_whole_interval = 0, atomic_float_interval = 0, atomic_lane_interval = 0,
+         atomic_answer_interval = 0;
   // A write takes 1.25 cycles on an H200, with one more for each whole sector and 1.31 for each sector that
   // is written in part (docs/validation.md).
   double write_visit = 0;

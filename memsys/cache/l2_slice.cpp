@@ -152,7 +152,10 @@ Cycle L2Slice::service_parts(const Packet& packet) const {
   const Cycle turns = num_turns(packet);
   const bool is_float = float_parts_ > 0 && packet.atomic.adds_floats;
   const bool is_whole = whole_parts_ > 0 && packet.atomic.lanes == turns * (kSectorBytes / 4);
-  return turns * (is_float ? float_parts_ : is_whole ? whole_parts_ : turn_parts_) + packet.atomic.lanes * lane;
+  return turns * (is_float   ? float_parts_
+                  : is_whole ? whole_parts_
+                             : turn_parts_) +
+         packet.atomic.lanes * lane;
 }
 
 // Keeps the slice busy with a packet. Writes may take parts of cycles: a packet that waited for the one

@@ -152,7 +152,8 @@ class L2Slice {
   static constexpr Cycle kParts = 16;  // number of parts of a cycle
 
   const L2Params params_;
-  const Cycle visit_parts_, partial_parts_, turn_parts_, whole_parts_, float_parts_, lane_parts_, answer_parts_;
+  const Cycle visit_parts_, partial_parts_, turn_parts_, whole_parts_, float_parts_, lane_parts_,
+      answer_parts_;
   const uint32_t line_bytes_, atom_sectors_;
   const uint32_t index_;
   const Cycle dram_latency_;

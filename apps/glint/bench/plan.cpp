@@ -40,8 +40,8 @@ std::string key_of(const Session& session, const BenchOptions& options) {
       "stats {} small {} sample {} {} {} {}",
       report::fnv1a(report::config_key_values(describe_params(gpu))), options.mode,
       fmt::join(options.frame.arguments(), " "),
-      options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION, setup::build_commit(),
-      report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
+      options.assets.empty() ? "" : fs::weakly_canonical(options.assets).string(), GLINT_VERSION,
+      setup::build_commit(), report::fnv1a(bytes_of("/proc/self/exe")), hash_of_shaders(session.resources),
       identity_of(session.plugins), fmt::join(observe_arguments(options.observe), " "), options.stats,
       options.small, options.sample.share, options.sample.by, options.sample.launches, options.sample.seed);
   return fmt::format("{:016x}", report::fnv1a(text));
