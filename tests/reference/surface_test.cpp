@@ -84,7 +84,7 @@ TEST_CASE("rays that are not opaque pass holes and nothing else, in both interse
   left.opaque = middle.opaque = false;
   CHECK(intersector->closest(left).model == 1);
   CHECK(intersector->closest(left).t == Approx(2));  // Embree's last bits depend on the processor.
-  CHECK(intersector->closest(middle).model == 0);  // alpha 0.25 is not a hole
+  CHECK(intersector->closest(middle).model == 0);    // alpha 0.25 is not a hole
 }
 
 TEST_CASE("a mirrored and stretched instance is moved with normals that stay at right angles to it") {
