@@ -40,7 +40,7 @@ void run_arithmetic(benchmark::State& state, bool timing) {
   double instructions = 0, seconds = 0;
   for (auto _ : state) {
     pipeline::PipelineWorld world(description, gpu);
-    const pipeline::RenderResult result = pipeline::run_pipeline(world, gpu, timing, false, 1, {});
+    const pipeline::RenderResult result = pipeline::run_world(world.world(), gpu, timing, false, 1, {});
     state.SetIterationTime(result.wall_seconds);
     instructions += double(result.warp_instructions);
     seconds += result.wall_seconds;

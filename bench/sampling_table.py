@@ -66,7 +66,7 @@ def truth_of(sums):
 def measure(glint, workload, options, seeds, settings):
     """Returns rows (workload, seed, name, truth, value, low, high, seconds of the whole run, of the sample)."""
     rows = []
-    frame = ["--size", options.size, "--spp", str(options.spp)]
+    frame = [] if workload.endswith(".toml") else ["--size", options.size, "--spp", str(options.spp)]
     sample, common, share, program = "--sample-pixels", [*frame, *settings], options.share, workload
     by = [] if options.launches else ["--sample-by", options.by]
     if options.launches:
@@ -86,7 +86,7 @@ def measure(glint, workload, options, seeds, settings):
             for name in NAMES:
                 if (value := sums.get(f"gpu.sample.{name}")) is None or name not in truth:
                     continue
-                rows.append([workload, seed, name, truth[name], value, sums[f"gpu.sample.{name}_low"],
+                rows.append([pathlib.Path(workload).stem, seed, name, truth[name], value, sums[f"gpu.sample.{name}_low"],
                              sums[f"gpu.sample.{name}_high"], long, short[options.launches]])
     return rows
 

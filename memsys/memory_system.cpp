@@ -43,9 +43,9 @@ MemoryContents MemorySystem::take_contents() {
   return out;
 }
 
-uint32_t MemorySystem::warm(Address line, uint8_t sectors, Touch touch) {
+uint32_t MemorySystem::warm(Address line, uint8_t sectors, Touch touch, Displaced displaced) {
   const uint32_t slice = map_.slice(line);
-  return partitions_[map_.partition_of(slice)]->warm(slice, line, sectors, touch);
+  return partitions_[map_.partition_of(slice)]->warm(slice, line, sectors, touch, displaced);
 }
 
 uint64_t MemorySystem::dirty_sectors() const {

@@ -47,9 +47,10 @@ class MemorySystem {
   MemoryContents take_contents();
   void put_contents(MemoryContents&& contents);
   // Lets the L2 hold sectors of a line (a physical, line-aligned address) as if they had just been read or
-  // written. It takes no time and counts nothing. Model: what makes way is not written back. Returns how many
-  // sectors were lost so: those that DRAM had not got yet.
-  uint32_t warm(Address line, uint8_t sectors, Touch touch = Touch::Read);
+  // written. It takes no time and counts nothing. Returns how many sectors were lost: those of a line that
+  // made way and that DRAM had not got yet.
+  uint32_t warm(Address line, uint8_t sectors, Touch touch = Touch::Read,
+                Displaced displaced = Displaced::Lost);
   // Returns the number of sectors that the L2 holds and DRAM has not got yet.
   uint64_t dirty_sectors() const;
 

@@ -47,8 +47,8 @@ class Partition final : public Cell {
   PartitionContents take_contents();
   void put_contents(PartitionContents&& contents);
   // Does MemorySystem::warm() for slice `slice` of the memory system, which is one of this partition.
-  uint32_t warm(uint32_t slice, Address line, uint8_t sectors, Touch touch) {
-    return slices_[slice % slices_.size()]->warm(line, sectors, touch);
+  uint32_t warm(uint32_t slice, Address line, uint8_t sectors, Touch touch, Displaced displaced) {
+    return slices_[slice % slices_.size()]->warm(line, sectors, touch, displaced);
   }
 
   void finish(Cycle end);  // counts the cycles up to the end of the run under their reasons

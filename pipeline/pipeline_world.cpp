@@ -340,12 +340,4 @@ std::span<const std::byte> PipelineWorld::buffer(size_t index) const {
   return {memory_.find(buffer_address_[index], buffer_bytes_[index]), size_t(buffer_bytes_[index])};
 }
 
-RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
-                          uint32_t threads, const LaunchWatch& watch, const Observation& observe) {
-  RenderResult result = run_world(pipeline.world(), gpu, timing, no_skip, threads, watch, observe);
-  result.structures = pipeline.structures;
-  result.warnings = pipeline.warnings;
-  return result;
-}
-
 }  // namespace glint::pipeline

@@ -74,9 +74,4 @@ class PipelineWorld {
   Diagnostics errors_;
 };
 
-// Runs a pipeline of one launch. The result has counts, statistics and time, but no picture. Throws as
-// render() does.
-RenderResult run_pipeline(PipelineWorld& pipeline, const GpuParams& gpu, bool timing, bool no_skip,
-                          uint32_t threads, const LaunchWatch& watch, const Observation& observe = {});
-
 }  // namespace glint::pipeline

@@ -28,11 +28,7 @@ LaunchEnd early_end(const LaunchWatch& watch, Cycle now) {
 // Returns the bytes of shared memory that each warp of the launch needs for the stacks of its rays.
 uint32_t stack_bytes_per_warp(const GpuParams& params, const exec::World& world) {
   if (params.rt.unit == rt::kSoftware) return 0;
-  const auto& code = world.image->code;
-  const bool traces = std::any_of(code.begin(), code.end(), [](const exec::Step& step) {
-    return isa::effect_row(step.effect).finish == isa::Finish::Rays;
-  });
-  return traces ? rt::RtUnit::shared_bytes_per_warp(params.rt) : 0;
+  return traces_rays(world) ? rt::RtUnit::shared_bytes_per_warp(params.rt) : 0;
 }
 
 // Returns the number of threads beyond which threads wait more than they help. Choice: a core's work in a
@@ -55,6 +51,16 @@ const GpuParams& checked(const GpuParams& params, const exec::World& world) {
 }
 
 }  // namespace
+
+bool traces_rays(const exec::World& world) {
+  return std::ranges::any_of(world.image->code, [](const exec::Step& step) {
+    return isa::effect_row(step.effect).finish == isa::Finish::Rays;
+  });
+}
+
+core::Residency residency_of(const GpuParams& params, const exec::World& world) {
+  return core::residency(params.core, core::CoreCell::needs_of(world, stack_bytes_per_warp(params, world)));
+}
 
 // A turn is as long as the shortest time that a message can be on its way, so the cells of a turn are
 // independent of each other. Choice: other cores see stores, and atomics are done, at the end of the turn in
@@ -313,8 +319,7 @@ exec::NotFiniteStores TimingMachine::not_finite_stores() const {
 }
 
 void TimingMachine::collect(RenderResult& result) const {
-  result.residency =
-      core::residency(params_.core, core::CoreCell::needs_of(world_, stack_bytes_per_warp(params_, world_)));
+  result.residency = residency_of(params_, world_);
   for (const auto& core : cores_) {
     const core::CoreStats& stats = core->stats();
     for (size_t c = 0; c < size_t(isa::Class::Count); ++c) {

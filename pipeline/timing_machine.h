@@ -47,6 +47,12 @@ class Reserves {
   std::vector<std::pair<Address, uint64_t>> all_;
 };
 
+// Returns whether the launch has instructions that trace rays.
+bool traces_rays(const exec::World& world);
+
+// Returns how many blocks and warps of the launch fit on a core.
+core::Residency residency_of(const GpuParams& params, const exec::World& world);
+
 // Builds the whole GPU for one launch. `world` outlives the launch. Device runs one launch after another.
 class TimingMachine {
  public:

@@ -109,13 +109,17 @@ void L2Slice::fill(Cycle now, const DramReturn& data) {
   });
 }
 
-uint32_t L2Slice::warm(Address line, uint8_t sectors, Touch touch) {
+uint32_t L2Slice::warm(Address line, uint8_t sectors, Touch touch, Displaced displaced) {
   const uint32_t slot = tags_.find(line);
   uint32_t lost = 0;
-  if (slot != kNone)
+  if (slot != kNone) {
     tags_.touch(slot);
-  else
-    lost = num_sectors(tags_.victim(line).dirty);
+  } else if (const TagArray::Line& victim = tags_.victim(line); victim.dirty) {
+    if (displaced == Displaced::WrittenLater)
+      displaced_.push({victim.address(), victim.dirty});
+    else
+      lost = num_sectors(victim.dirty);
+  }
   TagArray::Line& held = slot == kNone ? tags_.insert(line) : tags_.line(slot);
   held.valid |= sectors;
   if (touch == Touch::Write) held.dirty |= sectors;
@@ -222,7 +226,8 @@ bool L2Slice::write(Cycle now, const Packet& packet) {
   const uint32_t slot = tags_.find(packet.line);
   if (slot == kNone) {
     const TagArray::Line& victim = tags_.victim(packet.line);
-    if (victim.dirty && !dram_room(num_sectors(victim.dirty))) return blocked_ = SliceCycle::QueueFull, false;
+    const uint8_t leaving = sectors_leaving(victim);
+    if (leaving && !dram_room(num_sectors(leaving))) return blocked_ = SliceCycle::QueueFull, false;
     evict(now, victim);
     seen_.insert_if_new(packet.line);
   } else {
@@ -275,12 +280,21 @@ uint8_t L2Slice::whole_atoms(uint8_t sectors) const {
   return out;
 }
 
+// Returns the sectors that go to DRAM when the victim makes way: its own, or those of a line that warm() has
+// displaced.
+uint8_t L2Slice::sectors_leaving(const TagArray::Line& victim) const {
+  if (victim.dirty) return victim.dirty;
+  return displaced_.empty() ? uint8_t{0} : displaced_.front().sectors;
+}
+
 void L2Slice::evict(Cycle now, const TagArray::Line& victim) {
-  if (!victim.used()) return;
-  ++stats_.evictions;
-  if (!victim.dirty) return;
+  if (victim.used()) ++stats_.evictions;
+  const uint8_t leaving = sectors_leaving(victim);
+  if (!leaving) return;
   ++stats_.write_backs;
-  queue_for_dram(now + dram_latency_, victim.address(), victim.dirty, true);
+  queue_for_dram(now + dram_latency_, victim.dirty ? victim.address() : displaced_.front().line, leaving,
+                 true);
+  if (!victim.dirty) displaced_.pop();
 }
 
 void L2Slice::send_reply(Cycle now, const Reply& reply) {

@@ -55,6 +55,10 @@ struct L2Stats : CacheStats {
 // Says what leaves a line in a cache that takes no time.
 enum class Touch : uint8_t { Read, Write };
 
+// Says what becomes of dirty lines that make way for such a line: DRAM never gets them, or they are written
+// back one by one, each when the next line comes into the slice whose own victim is clean.
+enum class Displaced : uint8_t { Lost, WrittenLater };
+
 // Describes a request on its way from a slice to the DRAM scheduler.
 struct ToDram {
   Cycle ready = 0;
@@ -102,7 +106,8 @@ class L2Slice {
     tags_ = std::move(contents.tags), words_ = std::move(contents.words), seen_ = std::move(contents.seen);
   }
 
-  uint32_t warm(Address line, uint8_t sectors, Touch touch);  // MemorySystem::warm()
+  // Does MemorySystem::warm().
+  uint32_t warm(Address line, uint8_t sectors, Touch touch, Displaced displaced);
   uint64_t dirty_sectors() const;  // number of sectors that it holds and DRAM has not got yet
 
   Ring<ToDram>& to_dram() { return to_dram_; }
@@ -125,6 +130,10 @@ class L2Slice {
     Packet packet;
     uint8_t missing = 0;
   };
+  struct DirtyLine {
+    Address line = 0;
+    uint8_t sectors = 0;
+  };
   struct HitReply {
     Cycle ready = 0;
     Reply reply;
@@ -142,6 +151,7 @@ class L2Slice {
     return (num_sectors(sectors) + params_.sectors_per_cycle - 1) / params_.sectors_per_cycle;
   }
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
+  uint8_t sectors_leaving(const TagArray::Line& victim) const;
   void evict(Cycle now, const TagArray::Line& victim);
   void send_reply(Cycle now, const Reply& reply);
   Cycle head_received() const;
@@ -166,6 +176,7 @@ class L2Slice {
   LineSet seen_;
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
+  Ring<DirtyLine> displaced_;  // by warm(); they are still to be written back
   Cycle busy_until_ = 0;
   Cycle busy_parts_ = 0;  // busy_until_ in parts of a cycle, before it was rounded up
   Cycle written_until_ = 0;

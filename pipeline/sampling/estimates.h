@@ -33,8 +33,9 @@ struct SampleCounts {
   const SamplePlan* plan = nullptr;
   std::array<std::vector<BlockWork>, size_t(Stratum::Count)> work;  // of the untimed blocks, in launch order
   std::vector<SampleBatch> batches;
-  BatchCounts total{};    // of the sample, from its launch to its end
-  DramTraffic traffic{};  // at its end
+  BatchCounts total{};             // of the sample, from its launch to its end
+  bool writes_are_missing = true;  // DRAM does not get the dirty lines that functional blocks displace
+  DramTraffic traffic{};           // at its end
   // These had been counted when a half of the timed blocks had started.
   BatchCounts half{};
   DramTraffic traffic_of_half{};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "base/split_mix.h"
@@ -21,32 +22,38 @@ constexpr uint32_t kLeastSegments = 10;
 constexpr uint32_t kLeastWaves = 3;  // the first two start cold, and what follows them is the steady state
 // Choice: of the blocks in front of a segment, and of all others, one in so many runs functionally.
 constexpr uint32_t kLeadStep = 3, kRestStep = 12;
-constexpr uint32_t kSurveyStep = 16;
+constexpr uint32_t kSurveyStep = 16, kLinesSurveyed = 128;
+
+// Names blocks from `begin` up to `end`.
+struct Range {
+  uint32_t begin = 0, end = 0;
+};
 
 // Adds the blocks of one plan in ascending order.
 class Planner {
  public:
-  Planner(SamplePlan& plan, const Survey& survey, SplitMix& numbers)
-      : plan_(plan), survey_(survey), numbers_(numbers) {}
+  // Of the `rows`, which are ascending, all blocks run functionally that are not timed.
+  Planner(SamplePlan& plan, const Survey& survey, SplitMix& numbers, std::vector<Range> rows)
+      : plan_(plan), survey_(survey), numbers_(numbers), rows_(std::move(rows)) {}
 
   // Adds the blocks up to `end` to a stratum, of which one in each `step` is executed.
   void add_every(Stratum stratum, uint32_t end, uint32_t step) {
-    for (uint32_t first = done_; first < end; first += step) {
-      uint32_t block = first + numbers_.below(step);
-      const uint32_t last = std::min(first + step, end) - 1;
-      if (survey_.has(block) && last > first) block = block < last ? block + 1 : block - 1;
-      if (block <= last && !survey_.has(block)) plan_.warm.push_back({block, stratum});
-      for (uint32_t one = first; one <= last; ++one) ++size_of(one, stratum);
+    while (done_ < end) {
+      while (next_row_ < rows_.size() && rows_[next_row_].end <= done_) ++next_row_;
+      const Range row = next_row_ < rows_.size() ? rows_[next_row_] : Range{end, end};
+      if (row.begin <= done_)
+        add(Stratum::Inside, std::min(row.end, end), 1);
+      else
+        add(stratum, std::min(row.begin, end), step);
     }
-    done_ = std::max(done_, end);
   }
 
-  // Adds `timed` groups of `scale` neighbours, of each of which one is timed.
+  // Adds `timed` groups of neighbours, of each of which one is timed.
   void add_timed(uint32_t timed) {
-    for (uint32_t i = 0; i < timed; ++i, done_ += plan_.scale) {
-      uint32_t chosen = done_ + numbers_.below(plan_.scale);
-      if (survey_.has(chosen) && plan_.scale > 1) chosen = chosen > done_ ? chosen - 1 : chosen + 1;
-      for (uint32_t block = done_; block < done_ + plan_.scale; ++block) {
+    for (uint32_t i = 0; i < timed; ++i, done_ += plan_.group) {
+      uint32_t chosen = done_ + numbers_.below(plan_.group);
+      if (survey_.has(chosen) && plan_.group > 1) chosen = chosen > done_ ? chosen - 1 : chosen + 1;
+      for (uint32_t block = done_; block < done_ + plan_.group; ++block) {
         if (block == chosen && !survey_.has(block)) {
           plan_.timed.push_back(block);
           continue;
@@ -57,9 +64,18 @@ class Planner {
     }
   }
   void begin_segment() { plan_.starts.push_back(uint32_t(plan_.timed.size())); }
-  uint32_t done() const { return done_; }
 
  private:
+  void add(Stratum stratum, uint32_t end, uint32_t step) {
+    for (uint32_t first = done_; first < end; first += step) {
+      uint32_t block = first + numbers_.below(step);
+      const uint32_t last = std::min(first + step, end) - 1;
+      if (survey_.has(block) && last > first) block = block < last ? block + 1 : block - 1;
+      if (block <= last && !survey_.has(block)) plan_.warm.push_back({block, stratum});
+      for (uint32_t one = first; one <= last; ++one) ++size_of(one, stratum);
+    }
+    done_ = end;
+  }
   uint32_t& size_of(uint32_t block, Stratum stratum) {
     return plan_.sizes[size_t(survey_.has(block) ? Stratum::Surveyed : stratum)];
   }
@@ -67,6 +83,8 @@ class Planner {
   SamplePlan& plan_;
   const Survey& survey_;
   SplitMix& numbers_;
+  const std::vector<Range> rows_;
+  size_t next_row_ = 0;
   uint32_t done_ = 0;  // blocks before this one have a place
 };
 
@@ -85,6 +103,37 @@ std::vector<double> costs_of_cells(const SamplePlaces& places, const Survey& sur
   return out;
 }
 
+// Holds numbers of blocks: of a segment, in front of the first one, and behind the last one.
+struct SegmentSizes {
+  uint32_t front = 0, length = 0, behind = 0;
+};
+
+// Returns the blocks of the segments that begin there, or behind the one before, with those in front and
+// behind.
+std::vector<Range> ranges_of(const std::vector<uint32_t>& begins, const SegmentSizes& sizes,
+                             uint32_t num_blocks) {
+  std::vector<Range> out;
+  auto left = uint32_t(sizes.front + begins.size() * sizes.length + sizes.behind);  // blocks still to place
+  uint32_t done = 0;
+  for (size_t s = 0; s < begins.size(); ++s) {
+    const uint32_t in_front = s == 0 ? sizes.front : 0, after = s + 1 == begins.size() ? sizes.behind : 0,
+                   size = in_front + sizes.length + after;
+    const uint32_t wanted = begins[s] - std::min(begins[s], in_front);
+    const uint32_t begin = std::min(std::max(wanted, done), num_blocks - left);
+    out.push_back({begin, begin + size});
+    done = begin + size, left -= size;
+  }
+  return out;
+}
+
+// Returns the blocks above those of the segments: they lie `row` blocks earlier.
+std::vector<Range> rows_above(const std::vector<Range>& segments, uint32_t row) {
+  std::vector<Range> out;
+  for (const Range& one : segments)
+    if (row > 0 && one.end > row) out.push_back({one.begin - std::min(one.begin, row), one.end - row});
+  return out;
+}
+
 std::unique_ptr<SampleWay> way_of(const SampleOptions& options) {
   return PolicyChoice<SampleWay>(options.by.c_str()).make({});
 }
@@ -98,26 +147,33 @@ uint32_t largest_scale(const GpuParams& gpu, double share) {
   return 1;
 }
 
-GpuParams cut(const GpuParams& gpu, uint32_t scale) {
+GpuParams cut(const GpuParams& gpu, uint32_t scale, double l2_share) {
   GpuParams part = gpu;
   part.cores /= scale;
   part.memory.dram.channels /= scale;
-  part.memory.l2.slice_size *= scale;
+  const uint64_t set = uint64_t{std::max(gpu.memory.l2.ways, 1u)} * gpu.memory.line;
+  const double sets = l2_share * double(gpu.memory.l2.slice_size * scale) / double(set);
+  part.memory.l2.slice_size = std::max<uint64_t>(1, uint64_t(std::llround(sets))) * set;
   part.core.grid_interval *= scale;
   return part;
 }
 
-Survey survey_for(const SampleOptions& options) {
+Survey survey_for(const SampleOptions& options, uint32_t blocks_of_lines) {
   if (!(options.share > 0 && options.share <= 0.5))
     throw UserError({}, fmt::format("a sample of {:g} % is out of range", 100 * options.share),
                     "it has more than 0 % and at most 50 % of a launch's blocks");
-  if (!way_of(options)->needs_costs()) return {};
+  const bool needs_costs = way_of(options)->needs_costs();
+  if (!blocks_of_lines && !needs_costs) return {};
+  const uint32_t step = needs_costs ? kSurveyStep : std::max(kSurveyStep, blocks_of_lines / kLinesSurveyed);
   SplitMix numbers(options.seed);
-  return {kSurveyStep, numbers.below(kSurveyStep), {}};
+  return {.step = step,
+          .first = numbers.below(step),
+          .asks = blocks_of_lines ? Question::Lines : Question::Cost,
+          .costs = {}};
 }
 
 SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32_t resident, uint32_t scale,
-                       const Survey& survey) {
+                       const Survey& survey, uint32_t row) {
   const auto num_timed = uint32_t(std::lround(options.share * num_blocks));
   if (num_timed < kLeastWaves * resident)
     throw UserError(
@@ -131,29 +187,39 @@ SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32
   const uint32_t filling = resident + resident / 2, behind = resident / 2,
                  rest = num_timed - filling - behind,
                  length = std::max(1u, std::min(resident, rest / kLeastSegments)), segments = rest / length;
-  SamplePlaces places{num_blocks, segments, length * scale, {}};
+  // Surveyed blocks have run, so groups of one block leave them out.
+  const uint32_t group = survey.asks == Question::Lines ? 1 : scale;
+  SamplePlaces places{num_blocks, segments, length * group, {}};
   if (survey.step) places.costs = costs_of_cells(places, survey);
   SamplePlan plan;
-  plan.num_blocks = num_blocks, plan.scale = scale;
+  plan.num_blocks = num_blocks, plan.scale = scale, plan.group = group;
   SplitMix numbers(options.seed);
-  const std::vector<uint32_t> begins = way_of(options)->begins(places, numbers);
-  Planner planner(plan, survey, numbers);
-  uint32_t left = (filling + segments * length + behind) * scale;  // blocks of the segments to come
+  const std::vector<Range> ranges =
+      ranges_of(way_of(options)->begins(places, numbers),
+                {.front = filling * group, .length = length * group, .behind = behind * group}, num_blocks);
+  Planner planner(plan, survey, numbers, group == 1 ? rows_above(ranges, row) : std::vector<Range>{});
   for (uint32_t s = 0; s < segments; ++s) {
-    const uint32_t in_front = s == 0 ? filling : 0, after = s + 1 == segments ? behind : 0;
-    const uint32_t wanted = begins[s] - std::min(begins[s], in_front * scale);
-    const uint32_t begin = std::min(std::max(wanted, planner.done()), num_blocks - left);
-    const uint32_t lead = begin - std::min(begin, places.span + places.span / 2);
+    const uint32_t begin = ranges[s].begin, lead = begin - std::min(begin, places.span + places.span / 2),
+                   in_front = s == 0 ? filling : 0, after = s + 1 == segments ? behind : 0;
     planner.add_every(Stratum::Rest, lead, kRestStep);
     planner.add_every(Stratum::Lead, begin, kLeadStep);
     if (in_front) planner.begin_segment();
     planner.add_timed(in_front);
     planner.begin_segment();
     planner.add_timed(length + after);
-    left -= (in_front + length + after) * scale;
   }
   planner.add_every(Stratum::Rest, num_blocks, kRestStep);
   return plan;
+}
+
+double footprint_share(const Survey& survey, const SamplePlan& plan) {
+  const auto surveyed = double(survey.costs.size());
+  if (survey.asks != Question::Lines || survey.lines == 0) return 1;
+  const double of_each = double(survey.lines_of_one) / surveyed;
+  const auto touched_by = [&](size_t blocks) {
+    return double(survey.lines) + of_each * (double(blocks) - surveyed);
+  };
+  return std::clamp(touched_by(plan.timed.size() + plan.warm.size()) / touched_by(plan.num_blocks), 0.0, 1.0);
 }
 
 }  // namespace glint::pipeline

@@ -31,13 +31,17 @@ struct WarmBlock {
 // segment is a run of neighbouring blocks, of which the small machine runs one in `scale`: as many as its
 // cores would get of them if it were whole. The other cores' blocks run functionally and leave what they
 // touch in the L2. So neighbours meet in the caches as they do in a whole run, which they do not when the
-// timed blocks are spread evenly. A share of the blocks in front of a segment and of all others run
-// functionally, too: for the L2, and to estimate the work of the whole launch. The first segment has blocks
-// in front that fill the machine, and the last one has blocks behind it that keep the machine full, so that
-// each segment is measured on a full machine.
+// timed blocks are spread evenly. Of a launch whose lines were asked for, the small machine runs all blocks
+// of a segment: what only neighbours share would otherwise be there already, since those that run
+// functionally are done before the timed ones begin. The blocks of the row above the segment run
+// functionally. A share of the blocks in front of a segment and of all others run functionally, too: for the
+// L2, and to estimate the work of the whole launch. The first segment has blocks in front that fill the
+// machine, and the last one has blocks behind it that keep the machine full, so that each segment is measured
+// on a full machine.
 struct SamplePlan {
   uint32_t num_blocks = 0;       // of the launch
   uint32_t scale = 1;            // the part of the machine that runs them is 1/scale
+  uint32_t group = 1;            // one of so many neighbours of a segment is timed
   std::vector<uint32_t> timed;   // ascending
   std::vector<uint32_t> starts;  // indices into `timed` at which segments begin; the first is 0
   std::vector<WarmBlock> warm;   // ascending
@@ -51,24 +55,37 @@ struct SamplePlan {
 // partitions, and a part still has room for `share` of the blocks.
 uint32_t largest_scale(const GpuParams& gpu, double share);
 
-// Returns the machine cut to 1/scale. The L2 keeps its whole size, because the data that blocks share are not
-// fewer in a sample.
-GpuParams cut(const GpuParams& gpu, uint32_t scale);
+// Returns the machine cut to 1/scale, with `l2_share` of the whole L2. Data that all blocks share are not
+// fewer in a sample, and data that each block has for itself are (footprint_share()).
+GpuParams cut(const GpuParams& gpu, uint32_t scale, double l2_share = 1);
 
-// Holds what some of a launch's blocks cost: every n-th one, or none where the way does not ask for it.
+// Says what is asked of some of a launch's blocks before others run: nothing, what they cost, or also which
+// lines of memory they touch.
+enum class Question : uint8_t { None, Cost, Lines };
+
+// Holds what some of a launch's blocks do: every n-th one, or none where nothing is asked.
 struct Survey {
   uint32_t step = 0, first = 0;  // it has the blocks first, first + step and so on; step 0: it has none
-  std::vector<double> costs;     // of these blocks
+  Question asks = Question::None;
+  std::vector<double> costs;             // of these blocks
+  uint64_t lines = 0, lines_of_one = 0;  // that any of them touches, and that a single one does
   bool has(uint32_t block) const { return step > 0 && block >= first && (block - first) % step == 0; }
 };
 
-// Returns which blocks have to be surveyed. Their costs are still missing. Throws UserError for a share that
-// is out of range.
-Survey survey_for(const SampleOptions& options);
+// Returns which blocks have to be surveyed. What they do is still missing. Lines are asked for of a launch of
+// `blocks_of_lines`, unless that is 0, and otherwise costs, when the way of choosing needs them. Throws
+// UserError for a share that is out of range.
+Survey survey_for(const SampleOptions& options, uint32_t blocks_of_lines = 0);
 
-// Makes the plan for a launch of `num_blocks` of which the cut machine holds `resident` at a time. Equal
-// arguments give equal plans. Throws UserError for a share that is too small for the launch.
+// Makes the plan for a launch of `num_blocks` of which the cut machine holds `resident` at a time. The grid
+// has `row` blocks in a row, or one row when it is 0. Equal arguments give equal plans. Throws UserError for
+// a share that is too small for the launch.
 SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32_t resident, uint32_t scale,
-                       const Survey& survey = {});
+                       const Survey& survey = {}, uint32_t row = 0);
+
+// Returns which share of the lines that a whole launch touches those blocks of the plan touch that run on the
+// part or for its L2. Each further block adds as many lines as surveyed blocks have for themselves (the
+// estimator of Good and Turing). It is 1 where lines were not asked for.
+double footprint_share(const Survey& survey, const SamplePlan& plan);
 
 }  // namespace glint::pipeline

@@ -42,11 +42,16 @@ DramTraffic traffic_of(const TimingMachine& machine, uint64_t unwritten_sectors)
 class Sampler final : public LaunchPart {
  public:
   Sampler(const SamplePlan& plan, TimingMachine& machine, const exec::World& world,
-          std::vector<BlockWork> surveyed)
+          std::vector<BlockWork> surveyed, mem::Displaced displaced)
       : plan_(plan),
         machine_(machine),
-        warmer_(world, machine.params().core.instruction_budget, machine.params().memory, machine.memory(),
-                Written::AsRead) {
+        displaced_(displaced),
+        warmer_(
+            world, machine.params().core.instruction_budget, machine.params().memory,
+            [this](Address line, uint8_t sectors, mem::Touch touch) {
+              return machine_.memory().warm(line, sectors, touch, displaced_);
+            },
+            Written::AsRead) {
     work_[size_t(Stratum::Surveyed)] = std::move(surveyed);
   }
 
@@ -94,6 +99,7 @@ class Sampler final : public LaunchPart {
 
   const SamplePlan& plan_;
   TimingMachine& machine_;
+  const mem::Displaced displaced_;
   Warmer warmer_;
   size_t next_warm_ = 0, next_start_ = 0, segment_ = 0;
   uint32_t last_started_ = 0, first_wave_ = 0;
@@ -108,31 +114,46 @@ class Sampler final : public LaunchPart {
 SampleCounts Sampler::finish(Cycle cycles) {
   const DramTraffic at_end = traffic();
   warm(plan_.num_blocks);
-  return {&plan_, std::move(work_), std::move(batches_), counts_of(machine_, cycles), at_end,
-          half_,  traffic_of_half_};
+  return {.plan = &plan_,
+          .work = std::move(work_),
+          .batches = std::move(batches_),
+          .total = counts_of(machine_, cycles),
+          .writes_are_missing = displaced_ == mem::Displaced::Lost,
+          .traffic = at_end,
+          .half = half_,
+          .traffic_of_half = traffic_of_half_};
 }
 
 // Returns the blocks of the launch that the machine holds at a time.
-uint32_t resident_blocks(const TimingMachine& machine) {
-  RenderResult result;
-  machine.collect(result);
-  return std::max(1u, result.residency.blocks * machine.num_cores());
+uint32_t resident_blocks(const GpuParams& gpu, const exec::World& world) {
+  return std::max(1u, residency_of(gpu, world).blocks * gpu.cores);
+}
+
+// Returns the blocks in a row of the grid, or 0 when it has one row or none.
+uint32_t row_of(const exec::World& world) {
+  const auto &size = world.launch_size, &block = world.block_size;
+  return block[0] && size[1] > block[1] ? size[0] / block[0] : 0;
 }
 
 }  // namespace
 
 SampledRun run_sampled(const exec::World& world, const GpuParams& gpu, const SampleOptions& options,
                        uint32_t threads, const LaunchWatch& watch) {
-  Survey survey = survey_for(options);
+  // Model: of a launch with rays, what blocks share is most of what they touch.
+  const bool is_private = !traces_rays(world);
+  const uint32_t num_blocks = exec::num_blocks(world);
+  Survey survey = survey_for(options, is_private ? num_blocks : 0);
   SampledRun run;
   const auto begin = std::chrono::steady_clock::now();
   const uint32_t scale = largest_scale(gpu, options.share);
-  const GpuParams part = cut(gpu, scale);
-  auto machine = std::make_unique<TimingMachine>(part, world, false, HostOptions{.threads = threads});
   RenderResult& result = run.result;
-  std::vector<BlockWork> surveyed = run_survey(world, part.core.instruction_budget, survey, result.faults);
-  run.plan = plan_sample(options, exec::num_blocks(world), resident_blocks(*machine), scale, survey);
-  Sampler sampler(run.plan, *machine, world, std::move(surveyed));
+  std::vector<BlockWork> surveyed = run_survey(world, gpu, survey, result.faults);
+  run.plan =
+      plan_sample(options, num_blocks, resident_blocks(cut(gpu, scale), world), scale, survey, row_of(world));
+  const GpuParams part = cut(gpu, scale, footprint_share(survey, run.plan));
+  auto machine = std::make_unique<TimingMachine>(part, world, false, HostOptions{.threads = threads});
+  Sampler sampler(run.plan, *machine, world, std::move(surveyed),
+                  is_private ? mem::Displaced::WrittenLater : mem::Displaced::Lost);
   result.cycles = machine->run(watch, &sampler);
   result.end = machine->end();
   result.progress = machine->progress();

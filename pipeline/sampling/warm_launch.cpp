@@ -17,7 +17,10 @@ RenderResult warm_launch(const exec::World& world, const GpuParams& gpu, Caches 
   mem::MemorySystem memory(gpu.memory, gpu.cores, gpu.clock_mhz, &unread);
   mem::MemoryContents before = device.take_contents();
   if (caches == Caches::Warm && !before.empty()) memory.put_contents(std::move(before));
-  Warmer warmer(world, gpu.core.instruction_budget, gpu.memory, memory, Written::StaysDirty);
+  const auto sink = [&](Address line, uint8_t sectors, mem::Touch touch) {
+    return memory.warm(line, sectors, touch);
+  };
+  Warmer warmer(world, gpu.core.instruction_budget, gpu.memory, sink, Written::StaysDirty);
   const uint32_t num_blocks = exec::num_blocks(world);
   LaunchProgress progress;
   progress.num_warps = uint64_t{num_blocks} * exec::warps_per_block(world);

@@ -1,21 +1,22 @@
-// Hears of the accesses of blocks, and hands their lines to the L2.
+// Hears of the accesses of blocks, and hands on their lines.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/sampling/warmer.h"
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "base/num_lanes.h"
 #include "isa/effects.h"
 
 namespace glint::pipeline {
 
-Warmer::Warmer(const exec::World& world, uint64_t instruction_budget, const mem::Params& params,
-               mem::MemorySystem& memory, Written written)
+Warmer::Warmer(const exec::World& world, uint64_t instruction_budget, const mem::Params& params, Sink sink,
+               Written written)
     : world_(world),
       line_shift_(uint32_t(std::countr_zero(params.line))),
       written_(written),
-      memory_(memory),
+      sink_(std::move(sink)),
       executor_(world),
       endless_(*world.image),
       runner_(world, endless_, instruction_budget),
@@ -81,7 +82,7 @@ void Warmer::touch_line(Address line, uint8_t sectors, mem::Touch touch) {
   if ((known & sectors) == sectors) return;
   recent.sectors |= sectors;
   known |= sectors;
-  lost_ += memory_.warm(line, sectors, touch);
+  lost_ += sink_(line, sectors, touch);
 }
 
 }  // namespace glint::pipeline

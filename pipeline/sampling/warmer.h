@@ -1,7 +1,8 @@
-// Runs blocks functionally, and lets the L2 of a timing machine hold what they touch.
+// Runs blocks functionally, and hands on what they touch, for the L2 of a timing machine.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/coalesce.h"
@@ -22,13 +23,18 @@ enum class Written : uint8_t {
 // cores. Accesses to stacks and shared memory are left out.
 class Warmer {
  public:
-  // `world` and `memory` outlive the warmer. `params` are those of the memory.
-  Warmer(const exec::World& world, uint64_t instruction_budget, const mem::Params& params,
-         mem::MemorySystem& memory, Written written);
+  // Takes sectors of a line, and returns how many others it has lost (MemorySystem::warm()).
+  using Sink = std::function<uint32_t(Address line, uint8_t sectors, mem::Touch touch)>;
+
+  // `world` outlives the warmer. `params` are those of the memory.
+  Warmer(const exec::World& world, uint64_t instruction_budget, const mem::Params& params, Sink sink,
+         Written written);
 
   // Runs block `index` and returns what it did. Throws Error(Exit::Fault) as run_functional()
   // does.
   WorkCounts run(uint32_t index);
+  // Forgets what was handed on, so that the sink hears of all lines of the next block.
+  void forget() { recent_.assign(recent_.size(), Recent{}); }
   const exec::FaultLog& passed() const { return executor_.passed(); }  // faults that were let pass
   // Returns how many sectors made way that DRAM had not got yet.
   uint64_t lost_sectors() const { return lost_; }
@@ -41,7 +47,7 @@ class Warmer {
   const exec::World& world_;
   const uint32_t line_shift_;  // a line has 1 << line_shift_ bytes
   const Written written_;
-  mem::MemorySystem& memory_;
+  const Sink sink_;
   exec::Executor executor_;
   const exec::EndlessLoops endless_;
   BlockRunner runner_;

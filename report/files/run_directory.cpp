@@ -134,6 +134,15 @@ void add_frames(const RunInfo& info, nlohmann::ordered_json& json) {
   if (!info.frames.empty()) json["frames"] = info.frames;
 }
 
+void add_outputs(const RunInfo& info, nlohmann::ordered_json& json) {
+  const bool is_incomplete = info.sample && info.sample->of == SampleInfo::Of::Blocks;
+  for (const OutputInfo& output : info.outputs) {
+    nlohmann::ordered_json& one = json["outputs"][output.file];
+    one = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};
+    if (is_incomplete) one["incomplete"] = true;
+  }
+}
+
 nlohmann::ordered_json json_of(const PartInfo& part) {
   return {{"reason", part.reason},
           {"cycles", part.cycles},
@@ -346,8 +355,7 @@ void RunDirectory::write_run(const RunInfo& info) const {
   if (!info.launches.empty()) json["launches"] = info.launches;
   add_frames(info, json);
   if (!info.saved.empty()) json["saved"] = info.saved;
-  for (const OutputInfo& output : info.outputs)
-    json["outputs"][output.file] = {{"name", output.name}, {"kind", output.is_image ? "image" : "buffer"}};
+  add_outputs(info, json);
   written_.erase("run.json");  // A file cannot hold its own sum.
   json["files"] = json_of(written_);
   if (info.part) json["partial"] = json_of(*info.part);

@@ -56,7 +56,8 @@ struct SampleInfo {
   uint64_t clusters = 0;        // of launches
 };
 
-// Names a file that holds an image or a buffer of a pipeline, or a buffer of a kernel.
+// Names a file that holds an image or a buffer of a pipeline, or a buffer of a kernel. It is incomplete when
+// only a sample of the launch's blocks ran.
 struct OutputInfo {
   std::string file, name;
   bool is_image = false;

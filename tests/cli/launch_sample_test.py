@@ -116,7 +116,7 @@ keys = { core.warps = [8, 16] }
         for row in rows:
             self.assertTrue(float(row["cycles_low"]) < float(row["cycles"]) < float(row["cycles_high"]))
         self.write("wrong.toml", (self.folder / "program.toml").read_text().replace("sample-launches = 8", "sample-pixels = '5%'"))
-        self.expect(2, ["--sample-pixels belongs to scenes, and 'gaussian' is none"], "sweep", "run", "wrong.toml")
+        self.expect(2, ["--sample-pixels cannot be used with 'gaussian'"], "sweep", "run", "wrong.toml")
 
     def test_what_cannot_be_sampled_is_refused(self):
         for number in ("0", "-3", "2.5", "x", "100%", "0%"):

@@ -113,7 +113,7 @@ keys = { rt.warps = [1, 4], core.warps = [4] }
         for options in (["--mode", "functional"], ["--profile"], ["--sample", "100"], ["--heat"], ["--max-cycles", "5"]):
             self.expect(2, ["--sample-pixels cannot be used with"], "run", *SAMPLE, *options)
         self.expect(2, ["--sample-pixels cannot be used with --frames"], "run", *SAMPLE, "--frames", "0:1")
-        self.expect(2, ["--sample-pixels belongs to scenes"], "run", "bfs", "--sample-pixels", "5%")
+        self.expect(2, ["--sample-pixels cannot be used with 'bfs'"], "run", "bfs", "--sample-pixels", "5%")
 
 
 if __name__ == "__main__":

@@ -44,14 +44,16 @@ void check_scene_options(const RunOptions& options) {
                                         : "what a pipeline, a kernel or a script renders stands in its file");
 }
 
-// Refuses to sample the pixels of what is not a frame, and the launches of what does not launch several.
+// Refuses to sample the blocks of what has more launches than one, and the launches of what does not launch
+// several.
 void check_sampled(const RunOptions& options) {
   check_sample(options.launch);
   const SampleChoice& sample = options.launch.sample;
   const std::string& what = options.scene.scene;
-  if (sample.wants_pixels() && !is_scene(what))
-    throw UserError({}, fmt::format("--sample-pixels belongs to scenes, and '{}' is none", what),
-                    "leave it away to run the whole launch; --sample-launches samples several launches");
+  if (sample.wants_pixels() && (names_script(what) || names_program(what)))
+    throw UserError({}, fmt::format("--sample-pixels cannot be used with '{}'", what),
+                    "it samples the blocks of one launch, of a scene, a pipeline, a kernel or a capsule; "
+                    "--sample-launches samples several launches");
   if (sample.wants_launches() && (names_script(what) || names_capsule(what)))
     throw UserError({}, fmt::format("--sample-launches cannot be used with '{}'", what),
                     "it samples compute programs, lists of launches and --frames");

@@ -79,9 +79,10 @@ uint32_t SampleChoice::launches_of(uint32_t all, uint32_t least) const {
 
 void add_sample_options(Command command, SampleChoice& choice) {
   command
-      .add_option("--sample-pixels", choice.share,
-                  "Time only this share of a frame's pixels, such as 5%, on a part of the machine, and "
-                  "estimate the rest with 95 % intervals (docs/sampling.md)")
+      .add_option(
+          "--sample-pixels", choice.share,
+          "Time only this share of a launch's blocks, such as 5% of a frame's pixels, on a part of the "
+          "machine, and estimate the rest with 95 % intervals (docs/sampling.md)")
       .type_name("SHARE");
   command
       .add_option("--sample-launches", choice.launches,
@@ -92,7 +93,7 @@ void add_sample_options(Command command, SampleChoice& choice) {
   command
       .add_option(
           "--sample-by", choice.by,
-          "Selects how --sample-pixels places what it times: position spreads it over the frame, "
+          "Selects how --sample-pixels places what it times: position spreads it over the launch, "
           "uniform puts it anywhere, cost and heat look first at what a few blocks of each place cost "
           "functionally (docs/sampling.md)")
       .one_of(Registry<pipeline::SampleWay>::names())

@@ -16,6 +16,7 @@
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/outputs.h"
 #include "apps/glint/run/recorded_run.h"
+#include "apps/glint/run/single_launch.h"
 #include "base/file_store.h"
 #include "pipeline/capsule/capsule_world.h"
 #include "report/files/run_directory.h"
@@ -164,21 +165,18 @@ Exit run_capsule(const Session& session, const std::string& what, const LaunchOp
                                                      : options.out);
   setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
+  SingleLaunch launch(options, job);
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
-      [&](const pipeline::LaunchWatch& watch) {
-        return pipeline::run_world(world.world(), job.gpu, job.timing, job.no_skip, options.threads, watch,
-                                   options.observe);
-      },
+      [&](const pipeline::LaunchWatch& watch) { return launch.run(world.world(), info, watch); },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
         files = keep_changed(watched, world.memory(), directory, info);
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
-        for (std::string& line : write_observation(options.observe, ended, directory))
-          files.push_back(std::move(line));
+        for (std::string& line : launch.keep(ended, directory)) files.push_back(std::move(line));
       },
       &prints);
-  return print_result(session, options.json, job, result, info, title, std::move(files));
+  return print_result(session, options.json, job, result, info, title, std::move(files), launch.estimates());
 }
 
 }  // namespace glint::app

@@ -144,9 +144,13 @@ void check_listed(const SampleChoice& choice, bool is_list, bool timing, const s
   if (choice.wants_launches() && !is_list)
     throw UserError({}, fmt::format("--sample-launches cannot be used with '{}', which has one launch", what),
                     "it samples compute programs, lists of launches and --frames");
-  if (choice.wants_launches() && !timing)
+  if (choice.wants_pixels() && is_list)
+    throw UserError(
+        {}, fmt::format("--sample-pixels cannot be used with '{}', which has a list of launches", what),
+        "it samples the blocks of one launch; --sample-launches samples several launches");
+  if (!choice.given().empty() && !timing)
     throw UserError({what},
-                    "--sample-launches needs the timing machine, and the file says mode = \"functional\"",
+                    choice.given() + " needs the timing machine, and the file says mode = \"functional\"",
                     "--mode timing overrides it");
 }
 

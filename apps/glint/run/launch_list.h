@@ -65,7 +65,8 @@ struct ListResults {
   std::vector<pipeline::Estimate> estimates;  // of a sampled run
 };
 
-// Throws UserError when launches are to be sampled and `what` has no list of them, or runs without time.
+// Throws UserError when launches are to be sampled and `what` has no list of them, when blocks are and it has
+// one, or when it runs without time.
 void check_listed(const SampleChoice& choice, bool is_list, bool timing, const std::string& what);
 
 // Runs the launches and leaves a run directory of each in that of the run, which `info` describes. Returns

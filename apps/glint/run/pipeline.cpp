@@ -14,6 +14,7 @@
 #include "apps/glint/run/launch_list.h"
 #include "apps/glint/run/outputs.h"
 #include "apps/glint/run/recorded_run.h"
+#include "apps/glint/run/single_launch.h"
 #include "pipeline/description/defaults.h"
 #include "pipeline/description/pictures.h"
 #include "pipeline/pipeline_world.h"
@@ -87,10 +88,36 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
   return lines;
 }
 
+// Holds what the launches run on.
+struct Machine {
+  std::string mode, config;
+  pipeline::RenderJob job;
+};
+
+// Returns the machine of a file. The command line's options win over the file's.
+Machine machine_of(const Session& session, const pipeline::MachineDescription& file,
+                   const LaunchOptions& options) {
+  const auto first = [](const std::string& a, const std::string& b, const char* c) {
+    return !a.empty() ? a : !b.empty() ? b : std::string(c);
+  };
+  Machine out;
+  out.mode = first(options.mode_given ? options.mode : "", file.mode, "timing");
+  out.config = first(options.config_given ? options.config : "", file.config, "mobile");
+  std::vector<std::string> settings = file.settings;
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
+  out.job.gpu = read_config(session.resources, out.config, settings);
+  const uint64_t budget = options.max_instructions ? options.max_instructions : file.max_instructions;
+  if (budget) out.job.gpu.core.instruction_budget = budget;
+  out.job.timing = out.mode == "timing";
+  out.job.no_skip = options.no_skip;
+  check_observation(options.observe, out.job.timing);
+  check_max_cycles(options.max_cycles, out.job.timing);
+  return out;
+}
+
 report::RunInfo describe_run(const Session& session, const pipeline::PipelineWorld& world,
-                             const std::string& file, const pipeline::GpuParams& gpu,
-                             const std::string& config, const std::string& mode) {
-  report::RunInfo info = new_run_info(session, gpu, config, mode);
+                             const std::string& file, const Machine& machine) {
+  report::RunInfo info = new_run_info(session, machine.job.gpu, machine.config, machine.mode);
   info.scene = world.description().name;
   info.scene_form = "pipeline";
   info.scene_file = file;
@@ -129,10 +156,7 @@ pipeline::RenderResult run_list(LaunchList list, pipeline::PipelineWorld& world,
   for (size_t i = 0; i < launches.size(); ++i)
     list.launches.push_back({launches[i].name, shader_of(launches[i]), launches[i].warm,
                              [&world, i]() -> exec::World& { return world.world(i); }});
-  pipeline::RenderResult sum = run_launches(list, info, watch, results);
-  sum.structures = world.structures;
-  sum.warnings = world.warnings;
-  return sum;
+  return run_launches(list, info, watch, results);
 }
 
 // Names the pipeline and says how large it is.
@@ -168,23 +192,8 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   const pipeline::PipelineDescription description =
       read_description(what, glsl_options(options.shaders, cache.get()));
   check_saves(description);
-  const pipeline::MachineDescription& machine = description.machine;
-  const auto first = [](const std::string& a, const std::string& b, const char* c) {
-    return !a.empty() ? a : !b.empty() ? b : std::string(c);
-  };
-  const std::string mode = first(options.mode_given ? options.mode : "", machine.mode, "timing"),
-                    config = first(options.config_given ? options.config : "", machine.config, "mobile");
-  std::vector<std::string> settings = machine.settings;
-  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
-
-  pipeline::RenderJob job;
-  job.gpu = read_config(session.resources, config, settings);
-  const uint64_t budget = options.max_instructions ? options.max_instructions : machine.max_instructions;
-  if (budget) job.gpu.core.instruction_budget = budget;
-  job.timing = mode == "timing";
-  check_observation(options.observe, job.timing);
-  check_max_cycles(options.max_cycles, job.timing);
-  job.no_skip = options.no_skip;
+  const Machine machine = machine_of(session, description.machine, options);
+  const pipeline::RenderJob& job = machine.job;
   const bool is_list = !description.launches[0].name.empty();
   check_listed(options.sample, is_list, job.timing, what);
   pipeline::PipelineWorld world(description, job.gpu);
@@ -193,21 +202,25 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
     world.world(i).prints = &prints, world.world(i).on_fault = options.on_fault;
   for (const std::string& warning : world.warnings) fmt::print(stderr, "{}\n", warning);
 
-  const std::string title = fmt::format("{}, {} on {}", what_of(world, is_list), mode, config);
-  report::RunDirectory directory(options.out.empty() ? fmt::format("out/{}-{}", description.name, mode)
-                                                     : options.out);
-  report::RunInfo info = describe_run(session, world, what, job.gpu, config, mode);
+  const std::string title =
+      fmt::format("{}, {} on {}", what_of(world, is_list), machine.mode, machine.config);
+  report::RunDirectory directory(
+      options.out.empty() ? fmt::format("out/{}-{}", description.name, machine.mode) : options.out);
+  report::RunInfo info = describe_run(session, world, what, machine);
   info.on_fault = exec::name_of(options.on_fault);
   info.compact = options.compact();
   setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   ListResults launches;
+  SingleLaunch launch(options, job);
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
-        if (is_list) return run_list({options, job, directory, {}}, world, info, watch, launches);
-        return pipeline::run_pipeline(world, job.gpu, job.timing, job.no_skip, options.threads, watch,
-                                      options.observe);
+        pipeline::RenderResult ran =
+            is_list ? run_list({options, job, directory, {}}, world, info, watch, launches)
+                    : launch.run(world.world(), info, watch);
+        ran.structures = world.structures, ran.warnings = world.warnings;
+        return ran;
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
@@ -215,11 +228,11 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         files.insert(files.begin(), launches.lines.begin(), launches.lines.end());
         if (is_list) return;  // Each launch has kept its own.
-        for (std::string& line : write_observation(options.observe, ended, directory))
-          files.push_back(std::move(line));
+        for (std::string& line : launch.keep(ended, directory)) files.push_back(std::move(line));
       },
       &prints);
-  return print_result(session, options.json, job, result, info, title, std::move(files), launches.estimates);
+  return print_result(session, options.json, job, result, info, title, std::move(files),
+                      is_list ? launches.estimates : launch.estimates());
 }
 
 }  // namespace glint::app

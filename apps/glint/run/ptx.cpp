@@ -12,6 +12,7 @@
 #include "apps/glint/run/launch_file.h"
 #include "apps/glint/run/launch_list.h"
 #include "apps/glint/run/recorded_run.h"
+#include "apps/glint/run/single_launch.h"
 #include "report/files/config_file.h"
 #include "report/files/run_directory.h"
 #include "setup/recorded_launch.h"
@@ -100,13 +101,13 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   setup::begin_directory(directory, info, job.gpu, title);
   std::vector<std::string> files;
   ListResults launches;
+  SingleLaunch launch(options, job);
   const pipeline::RenderResult result = run_recorded(
       session, options.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {
         if (file.is_list())
           return run_launches({options, job, directory, listed(file, kernels)}, info, watch, launches);
-        return pipeline::run_world(kernels.prepare(0), job.gpu, job.timing, options.no_skip, options.threads,
-                                   watch, options.observe);
+        return launch.run(kernels.prepare(0), info, watch);
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
@@ -114,10 +115,10 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
         for (std::string& line : kernels.keep_buffers(directory)) files.push_back(std::move(line));
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         if (file.is_list()) return;  // Each launch has kept its own.
-        for (std::string& line : write_observation(options.observe, ended, directory))
-          files.push_back(std::move(line));
+        for (std::string& line : launch.keep(ended, directory)) files.push_back(std::move(line));
       });
-  return print_result(session, options.json, job, result, info, title, std::move(files), launches.estimates);
+  return print_result(session, options.json, job, result, info, title, std::move(files),
+                      file.is_list() ? launches.estimates : launch.estimates());
 }
 
 }  // namespace glint::app

@@ -14,6 +14,7 @@
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/frames.h"
 #include "apps/glint/run/recorded_run.h"
+#include "apps/glint/run/single_launch.h"
 #include "pictures/exr.h"
 #include "pipeline/render.h"
 #include "pipeline/sampling/sampled_run.h"
@@ -58,13 +59,7 @@ pipeline::SampledRun render_sample(const SampleChoice& choice, report::RunInfo& 
                                    pipeline::RenderJob& job) {
   const pipeline::SampleOptions options = choice.options();
   pipeline::SampledRun run = pipeline::render_sampled(job, options);
-  info.sample = report::SampleInfo{.share = options.share,
-                                   .seed = options.seed,
-                                   .all = run.plan.num_blocks,
-                                   .timed = run.plan.timed.size(),
-                                   .scale = run.plan.scale,
-                                   .warm = run.plan.num_functional(),
-                                   .by = options.by};
+  info.sample = sample_info(options, run.plan);
   return run;
 }
 

@@ -85,6 +85,47 @@ TEST_CASE("Surveyed blocks are neither timed nor run a second time", "[sampling]
   CHECK(survey_for({.by = "position"}).step == 0);
 }
 
+TEST_CASE("Where lines were asked for, segments are whole and the blocks of the row above run",
+          "[sampling]") {
+  const SampleOptions options{.share = 0.05, .seed = 3};
+  Survey survey = survey_for(options, 8192);
+  REQUIRE(survey.asks == Question::Lines);
+  REQUIRE(survey.step == 64);
+  survey.costs.assign(128, 1.0);
+  const SamplePlan plan = plan_sample(options, 8192, 42, 4, survey, 128);
+  CHECK(plan.group == 1);
+  CHECK(plan.scale == 4);
+  std::set<uint32_t> there(plan.timed.begin(), plan.timed.end());
+  for (const WarmBlock& warm : plan.warm) there.insert(warm.block);
+  CHECK(there.size() == plan.timed.size() + plan.warm.size());
+  for (size_t i = plan.starts[1]; i < plan.timed.size(); ++i) {
+    const uint32_t block = plan.timed[i];
+    const bool begins = std::ranges::find(plan.starts, i) != plan.starts.end();
+    if (!begins && !there.contains(block - 1)) REQUIRE(survey.has(block - 1));
+    if (block >= 128 && !there.contains(block - 128)) REQUIRE(survey.has(block - 128));
+  }
+}
+
+TEST_CASE("A part's L2 has the share of the lines that the blocks of the sample touch", "[sampling]") {
+  Survey survey{.step = 64, .first = 0, .asks = Question::Lines, .costs = std::vector<double>(100, 1.0)};
+  SamplePlan plan;
+  plan.num_blocks = 6400;
+  plan.timed.resize(600), plan.warm.resize(1000);
+  survey.lines = 500, survey.lines_of_one = 0;  // All blocks touch the same lines.
+  CHECK(footprint_share(survey, plan) == 1);
+  survey.lines_of_one = 500;  // Each has five for itself.
+  CHECK(footprint_share(survey, plan) == Approx(0.25));
+  survey.lines = 2000;  // 1500 are shared.
+  CHECK(footprint_share(survey, plan) == Approx((1500 + 5 * 1600.0) / (1500 + 5 * 6400.0)));
+  survey.asks = Question::Cost;
+  CHECK(footprint_share(survey, plan) == 1);
+
+  const GpuParams gpu = test::preset("mobile");
+  CHECK(cut(gpu, 4).memory.l2.slice_size == 4 * gpu.memory.l2.slice_size);
+  CHECK(cut(gpu, 4, 0.25).memory.l2.slice_size == gpu.memory.l2.slice_size);
+  CHECK(cut(gpu, 4, 0).memory.l2.slice_size == gpu.memory.l2.ways * gpu.memory.line);
+}
+
 TEST_CASE("Equal seeds choose equal blocks, and other seeds choose others", "[sampling]") {
   const auto timed = [](uint64_t seed) {
     return plan_sample({.share = 0.05, .seed = seed}, 8192, 42, 4).timed;
