@@ -55,7 +55,7 @@ def measure_tasks(folder, stand_in, alone):
         task = folder / f"task{size}.json"
         task.write_text(to_json(work, mine))
         start = time.monotonic()
-        subprocess.run([sys.executable, "-m", "glint.sweeps.worker", task], check=True, env={**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[1] / "python")}, capture_output=True)
+        subprocess.run([sys.executable, "-S", "-m", "glint.sweeps.worker", task], check=True, env={**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[1] / "python")}, capture_output=True)
         print(f"a task of {size}: {1000 * ((time.monotonic() - start) / size - alone):.0f} ms a point besides the run")
 
 

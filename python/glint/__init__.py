@@ -9,28 +9,28 @@
 """
 from __future__ import annotations
 
-import importlib
-from typing import Any
+from .lazy import getter
 
-from .characterization import Characterization
-from .collection import Bench, Runs, Sweep
-from .comparison import Change, compare, speedup
-from .errors import CommandFailed, GlintError, IncompleteRun, MissingFile, MissingPackage, SchemaError, UnknownName
-from .images import read_image
-from .labelling import labels
-from .launch import find_glint, run, sweep
-from .derived import Metric, Metrics, metrics
-from .run_directory import Estimate, Facts, Run
-from .statistics import Histogram, Stat, Stats
-from .table import Table
-from .trace import Slice, Trace
+# These are the public names of each module. A module is imported when one of its names is first asked for.
+_NAMES = {
+    "characterization": "Characterization",
+    "collection": "Bench Runs Sweep",
+    "comparison": "Change compare speedup",
+    "derived": "Metric Metrics metrics",
+    "errors": "CommandFailed GlintError IncompleteRun MissingFile MissingPackage SchemaError UnknownName",
+    "images": "read_image",
+    "labelling": "labels",
+    "launch": "find_glint run sweep",
+    "plot": "plot",  # the module itself, whose functions import matplotlib
+    "run_directory": "Estimate Facts Run",
+    "statistics": "Histogram Stat Stats",
+    "table": "Table",
+    "trace": "Slice Trace",
+}
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
+__all__ = sorted(_HOMES)
+__getattr__ = getter(__name__, _HOMES)
 
-__all__ = ["Bench", "Change", "Characterization", "CommandFailed", "Estimate", "Facts", "GlintError", "Histogram", "IncompleteRun", "Metric", "Metrics", "MissingFile", "MissingPackage",
-           "Run", "Runs", "SchemaError", "Slice", "Stat", "Stats", "Sweep", "Table", "Trace", "UnknownName", "compare", "find_glint", "labels",
-           "metrics", "plot", "read_image", "run", "speedup", "sweep"]
 
-
-def __getattr__(name: str) -> Any:
-    if name == "plot":  # imported late, because its functions import matplotlib
-        return importlib.import_module(".plot", __name__)
-    raise AttributeError(f"module 'glint' has no attribute '{name}'")
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 from ..errors import SweepError
-from .collecting import Collection, collect
-from .definition import Definition
-from .running import Engine, Status, read, run, status
-from .store import Store
+from ..lazy import getter
 
-__all__ = ["Collection", "Definition", "Engine", "Status", "Store", "SweepError", "collect", "read", "run", "status"]
+_NAMES = {"collecting": "Collection collect", "definition": "Definition", "running": "Engine Status read run status", "store": "Store"}
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
+__all__ = sorted([*_HOMES, "SweepError"])
+__getattr__ = getter(__name__, _HOMES)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -54,7 +54,7 @@ class SlurmCluster(Cluster):
         words = ["sbatch", "--parsable", f"--job-name={name}", f"--array=0-{len(tasks) - 1}", "--requeue", f"--signal=B:TERM@{_GRACE}", f"--cpus-per-task={threads}",
                  f"--mem={-(-(memory + _SPARE) // 1_000_000)}M", f"--output={place}/slurm-{attempt}-%a.log", "--open-mode=append", f"--chdir={place}", *self._options]
         script = "\n".join(["#!/bin/sh", self._setup, f"PYTHONPATH={shlex.quote(_PACKAGE)}${{PYTHONPATH:+:$PYTHONPATH}}", "export PYTHONPATH",
-                            f"exec {shlex.quote(self._python)} -m glint.sweeps.worker {shlex.quote(str(place))}/{attempt}-$(({offset} + SLURM_ARRAY_TASK_ID)).json", ""])
+                            f"exec {shlex.quote(self._python)} -S -m glint.sweeps.worker {shlex.quote(str(place))}/{attempt}-$(({offset} + SLURM_ARRAY_TASK_ID)).json", ""])
         done = subprocess.run(words, input=script, capture_output=True, text=True, check=False)
         if done.returncode:
             self.cancel()

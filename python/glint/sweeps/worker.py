@@ -1,6 +1,7 @@
-# Runs the points of one task of a cluster: `python3 -m glint.sweeps.worker TASK.json`.
+# Runs the points of one task of a cluster: `python3 -S -m glint.sweeps.worker TASK.json`.
 # SPDX-License-Identifier: Apache-2.0
-"""`run_task(path)` runs the points of a task's file one after another. A task may be killed and run again at any time."""
+"""`run_task(path)` runs the points of a task's file one after another. A task may be killed and run again at any time. It needs the standard
+library alone, so that its Python starts without looking for packages (-S)."""
 from __future__ import annotations
 
 import collections
