@@ -66,10 +66,11 @@ void AccessLines::collect_memory(MemoryAccess& access, const exec::WarpContext& 
                                                               : mem::Traffic::ShaderGlobal;
   access.atomic = is_atomic;
   if (const LaneMask lanes = executor_.lanes_in(Space::Shared))
-    access.passes = shared_passes(addresses, lanes, bytes, is_atomic && !access.merges_lanes);
+    access.passes = is_atomic ? bank_passes(addresses, lanes, bytes, !access.merges_lanes)
+                              : shared_passes(addresses, lanes, bytes, issued.row->effect == Effect::Store);
   const LaneMask in_global = executor_.lanes_in(Space::Global);
   if (params_.lsu.bank_conflicts && !is_atomic && in_global)
-    access.bank_turns = shared_passes(addresses, in_global, bytes, false);
+    access.bank_turns = bank_passes(addresses, in_global, bytes, false);
   coalesce_local(access.lines, local_, access.slot, addresses, executor_.lanes_in(Space::Local), bytes);
   coalesce_global(access.lines, *world_.memory, addresses, in_global, bytes);
   if (is_atomic && in_global)

@@ -115,7 +115,7 @@ void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Ac
   }
 }
 
-uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic) {
+uint32_t bank_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic) {
   constexpr size_t kBanks = 32;
   constexpr size_t kMost = 4 * size_t(kLanes);  // words of a warp's widest access
   std::array<std::array<uint32_t, kMost>, kBanks> words;
@@ -131,6 +131,33 @@ uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes
       passes = std::max(passes, count[bank]);
     }
   });
+  return passes;
+}
+
+namespace {
+
+// Returns whether all lanes have the address of the lane `distance` further, where both take part.
+bool pairs_agree(const isa::Access& access, LaneMask lanes, int distance) {
+  bool agree = true;
+  for_each_lane(lanes, [&](int lane) {
+    const int other = lane ^ distance;
+    agree &= (lanes >> other & 1) == 0 || access.address[size_t(lane)] == access.address[size_t(other)];
+  });
+  return agree;
+}
+
+}  // namespace
+
+uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_store) {
+  if (bytes <= 4) return bank_passes(access, lanes, bytes, false);
+  const uint32_t words = bytes / 4;
+  const bool is_paired = !is_store && (pairs_agree(access, lanes, 1) || pairs_agree(access, lanes, 2));
+  const uint32_t parts = is_paired ? words / 2 : words, width = uint32_t(kLanes) / parts;
+  uint32_t passes = 0;
+  for (uint32_t part = 0; part < parts; ++part) {
+    const LaneMask in_part = LaneMask((uint64_t{1} << width) - 1) << part * width;
+    passes += bank_passes(access, lanes & in_part, bytes, false);
+  }
   return passes;
 }
 

@@ -127,9 +127,14 @@ void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot
 void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,
                  bool turns, bool returns);
 
-// Returns how many times shared memory has to be read or written for a warp's access. This is the largest
-// number of different words in one bank (32 banks of 4 bytes; lanes that want one word share it) or, for
-// atomics, the largest number of lanes.
-uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic);
+// Returns the largest number of different words in one bank (32 banks of 4 bytes; lanes that want one word
+// share it) or, for atomics, the largest number of lanes; at least 1.
+uint32_t bank_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_atomic);
+
+// Returns how many times shared memory has to be read or written for a warp's load or store. Halves of a warp
+// take turns where a lane has 8 bytes, and quarters where it has 16; a part takes its bank_passes(), one at
+// least. A load has half as many parts where all pairs of neighbours, or of lanes two apart, have one
+// address. This is what an H100 takes for 133 patterns of addresses, to the pass (bench/probes/shared.csv).
+uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_store);
 
 }  // namespace glint::core

@@ -79,9 +79,10 @@ struct CoreStats : stats::Group {
                                "Number of warp instructions that store to shared memory."};
   stats::Counter shared_atomics{this, "shared_atomics", "instruction",
                                 "Number of atomic warp instructions on shared memory."};
-  stats::Counter shared_passes{this, "shared_passes", "pass",
-                               "Number of passes of shared memory for loads, stores and atomics. Each takes "
-                               "1 pass without bank conflicts."};
+  stats::Counter shared_passes{
+      this, "shared_passes", "pass",
+      "Number of passes of shared memory for loads, stores and atomics. Each takes "
+      "1 pass without bank conflicts, and up to 2 or 4 where a lane has 8 or 16 bytes."};
   stats::Counter global_atomics{this, "global_atomics", "instruction",
                                 "Number of atomic warp instructions on global memory."};
   stats::Counter barriers{this, "barriers", "instruction",

@@ -40,6 +40,7 @@ class DramModel {
     uint32_t interleave = 256;
     double core_mhz = 1000;
     stats::Group* parent = nullptr;
+    double refresh_phase = 1;  // the first refresh falls due after this share of the interval
   };
   virtual ~DramModel() = default;
 

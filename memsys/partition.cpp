@@ -9,13 +9,23 @@
 #include <utility>
 
 namespace glint::mem {
+namespace {
+
+// Choice: the channels refresh one after another, in even steps. On an H100, loads of all cores at once never
+// waited for a refresh together.
+double refresh_phase(uint32_t channel, const Params& params) {
+  return double(channel + 1) / double(params.dram.channels);
+}
+
+}  // namespace
 
 Partition::Partition(const Params& params, uint32_t index, const PartitionMap& map, double core_mhz,
                      std::vector<SlicePort> ports, stats::Group* parent)
     : group_(parent, fmt::format("partition[{}]", index)),
       index_(index),
       map_(map),
-      dram_(params.dram.model.make({params.dram, params.interleave, core_mhz, &group_})) {
+      dram_(params.dram.model.make(
+          {params.dram, params.interleave, core_mhz, &group_, refresh_phase(index, params)})) {
   for (uint32_t i = 0; i < ports.size(); ++i) {
     const std::string name = ports.size() == 1 ? "l2" : fmt::format("l2[{}]", i);
     slices_.push_back(std::make_unique<L2Slice>(params, index * uint32_t(ports.size()) + i, map,

@@ -18,7 +18,6 @@ import tomllib
 from pathlib import Path
 
 BENCH = Path(__file__).resolve().parent.parent / "bench"
-LAUNCH = 4400  # core.launch_latency of the preset
 
 
 def launch_file(folder, kernel, launch):
@@ -39,7 +38,10 @@ def read_counters(path):
 
 
 def run(glint, kernel, text, config, settings, runs):
-    """Returns what Glint counts: cycles, executed instructions, warps' loads from global memory. `runs` keeps the run directory, unless it is None."""
+    """Returns what Glint counts: cycles, executed instructions, warps' loads from global memory; and the launch latency of the configuration.
+
+    `runs` keeps the run directory, unless it is None.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{kernel}.toml"
         path.write_text(text)
@@ -49,11 +51,12 @@ def run(glint, kernel, text, config, settings, runs):
             command += ["--set", setting]
         subprocess.run(command, check=True, capture_output=True)
         rows = {row["path"]: row["value"] for row in csv.DictReader(open(out / "stats.csv"))}
+        launch = tomllib.loads((out / "config.toml").read_text())["core"]["launch_latency"]
 
     def total(name):
         return sum(float(value) for path, value in rows.items() if re.fullmatch(rf"gpu\.core\[\d+\]\.{name}", path))
 
-    return float(rows["gpu.cycles"]), total("instructions") + total("sequence_slots"), total("global_loads")
+    return float(rows["gpu.cycles"]), total("instructions") + total("sequence_slots"), total("global_loads"), launch
 
 
 def main():
@@ -77,18 +80,18 @@ def main():
     errors, inner, counts = [], [], []
     for kernel in options.kernel or launches:
         text = launch_file(folder, kernel, launches[kernel])
-        cycles, instructions, loads = run(options.glint, kernel, text, options.config, options.set, options.runs)
+        cycles, instructions, loads, launch = run(options.glint, kernel, text, options.config, options.set, options.runs)
         real = counters[kernel]
         error = cycles / real["sm__cycles_elapsed.max"] - 1
         executed = real["smsp__inst_executed.sum"]
         real_loads = real["l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum"]
         errors.append(abs(error))
-        inner.append(abs((cycles - LAUNCH) / (real["sm__cycles_elapsed.max"] - LAUNCH) - 1))
+        inner.append(abs((cycles - launch) / (real["sm__cycles_elapsed.max"] - launch) - 1))
         counts.append(abs(instructions / executed - 1))
         print(f"| {kernel} | {cycles:,.0f} | {real['sm__cycles_elapsed.max']:,.0f} | {error:+.1%} | {instructions:,.0f} | {executed:,.0f} | "
               f"{instructions / executed - 1:+.1%} | {f'{loads / real_loads - 1:+.1%}' if real_loads else loads:} |", flush=True)
     print(f"\nMean absolute error of cycles: {statistics.mean(errors):.1%} (median {statistics.median(errors):.1%}, largest {max(errors):.1%}); without "
-          f"{LAUNCH} cycles of launch on both sides: {statistics.mean(inner):.1%}; of instructions: {statistics.mean(counts):.1%}, of which "
+          f"{launch} cycles of launch on both sides: {statistics.mean(inner):.1%}; of instructions: {statistics.mean(counts):.1%}, of which "
           f"{sum(error <= 0.05 for error in counts)} of {len(counts)} within 5 %")
     return 0
 

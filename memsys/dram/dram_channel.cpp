@@ -7,6 +7,14 @@
 #include <bit>
 
 namespace glint::mem {
+namespace {
+
+DramClock first_refresh(DramClock interval, double phase) {
+  if (interval == kNever) return kNever;
+  return std::max<DramClock>(1, DramClock(double(interval) * phase));
+}
+
+}  // namespace
 
 DramChannel::DramChannel(const Context& context)
     : DramModel(context, DramTiming(context.params).data),
@@ -18,7 +26,7 @@ DramChannel::DramChannel(const Context& context)
       banks_(context.params.banks),
       group_gates_(context.params.bank_groups),
       group_turned_(context.params.bank_groups),
-      refresh_due_(timing_.refresh_interval) {
+      refresh_due_(first_refresh(timing_.refresh_interval, context.refresh_phase)) {
   for (uint32_t bank = 0; bank < banks_.size(); ++bank)
     bank_group_.push_back(uint8_t(bank % group_gates_.size()));
   for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(uint32_t(slots_.size()) - 1 - slot);

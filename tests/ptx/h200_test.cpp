@@ -26,42 +26,27 @@ struct Counters {
   double cycles = 0, instructions = 0, global_loads = 0;
 };
 
-// Returns the counters by name of the kernel. Each kernel has those of its middle launch by cycles where the
-// file numbers the launches. Where it does not, the second launch of a kernel has " again" after its name.
+// Returns the counters by name of the launch. Each has those of its middle run by cycles.
 std::map<std::string, Counters> read_counters(const std::filesystem::path& path) {
   std::map<std::string, std::vector<Counters>> launches;
   std::istringstream lines(read_file(path));
   std::vector<std::string> head;
   for (std::string line; std::getline(lines, line);) {
-    std::vector<std::string> cells(1);
-    bool quoted = false;
-    for (char c : line) {
-      if (c == '"')
-        quoted = !quoted;
-      else if (c == ',' && !quoted)
-        cells.emplace_back();
-      else
-        cells.back() += c;
-    }
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
     if (head.empty()) {
       head = cells;
       continue;
     }
-    if (cells[0].empty()) continue;  // the row of units
     const auto number = [&](const char* name) {
       for (size_t i = 0; i < head.size() && i < cells.size(); ++i)
-        if (head[i] == name) {
-          std::erase(cells[i], ',');  // thousands separators
-          return std::atof(cells[i].c_str());
-        }
+        if (head[i] == name) return std::atof(cells[i].c_str());
       FAIL("no column " << name);
       return 0.0;
     };
-    std::string name = cells[0].substr(0, cells[0].find('('));
-    if (head[1] != "launch")
-      while (launches.contains(name)) name += " again";
-    launches[name].push_back({number("sm__cycles_elapsed.max"), number("smsp__inst_executed.sum"),
-                              number("l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum")});
+    launches[cells.at(0)].push_back({number("sm__cycles_elapsed.max"), number("smsp__inst_executed.sum"),
+                                     number("l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum")});
   }
   std::map<std::string, Counters> out;
   for (auto& [name, all] : launches) {
@@ -146,8 +131,8 @@ struct Card {
   std::filesystem::path counters;
 };
 std::vector<Card> cards() {
-  return {{"h200", folder() / "../valid_ncu_summary.csv"},
-          {"h100", std::filesystem::path(GLINT_SOURCE_DIR) / "bench/calibration/counters_h100.csv"}};
+  const auto recorded = std::filesystem::path(GLINT_SOURCE_DIR) / "bench/calibration";
+  return {{"h200", recorded / "counters_h200.csv"}, {"h100", recorded / "counters_h100.csv"}};
 }
 
 void run_short(const Card& card) {

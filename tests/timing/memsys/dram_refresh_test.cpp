@@ -2,9 +2,12 @@
 // counted.
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
+#include <vector>
 
+#include "memsys/memory_system.h"
 #include "tests/support/catch.h"
 #include "tests/support/dram_rig.h"
+#include "tests/support/memory_rig.h"
 
 using namespace glint;
 using namespace glint::mem;
@@ -91,6 +94,18 @@ TEST_CASE("a bank's turn comes round after as many refreshes as there are banks"
   rig.idle_until(17'010);
   CHECK(rig.read_alone(0, 1) == 50 + 15 + 14 + kData);
   CHECK(rig.channel.stats().refreshes.value() == 17);
+}
+
+TEST_CASE("channels refresh one after another") {
+  Params params = bare();
+  params.dram = refreshed("all_bank");
+  params.dram.channels = 4;
+  stats::Group root(nullptr, "test");
+  MemorySystem memory(params, 1, 1000.0, &root);
+  memory.finish(600);  // refreshes are due at 250, 500, 750 and 1000
+  std::vector<uint64_t> refreshes;
+  for (uint32_t i = 0; i < 4; ++i) refreshes.push_back(memory.partition(i).dram().stats().refreshes.value());
+  CHECK(refreshes == std::vector<uint64_t>{1, 1, 0, 0});
 }
 
 TEST_CASE("refreshes happen on time in a channel that nobody asks, and cost it nothing") {

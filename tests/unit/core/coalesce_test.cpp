@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/coalesce.h"
 
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+
 #include "tests/support/catch.h"
 
 namespace glint::core {
@@ -145,6 +150,33 @@ TEST_CASE_METHOD(Fixture,
 
   with_stride(4, 4);
   CHECK(list.lines()[0].words == 0xffff'ffff);
+}
+
+TEST_CASE("loads and stores of shared memory take the passes that an H100 takes") {
+  std::ifstream file(GLINT_SOURCE_DIR "/bench/probes/shared.csv");
+  std::string line;
+  REQUIRE(std::getline(file, line));
+  int rows = 0;
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    std::string op, bits, pattern, cycles, index;
+    for (std::string* cell : {&op, &bits, &pattern, &cycles}) REQUIRE(std::getline(cells, *cell, ','));
+    const auto bytes = uint32_t(std::stoul(bits) / 8);
+    isa::Access access;
+    LaneMask lanes = 0;
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      REQUIRE(std::getline(cells, index, ','));
+      if (std::stoi(index) < 0) continue;
+      lanes |= LaneMask{1} << lane;
+      access.address[lane] = Address(std::stoi(index)) * bytes;
+    }
+    const double measured = std::stod(cycles);
+    INFO(line);
+    // The measurement includes the ends of a loop, and its stores overlap a little.
+    CHECK(std::abs(shared_passes(access, lanes, bytes, op == "store") - measured) < 0.12 + 0.03 * measured);
+    ++rows;
+  }
+  CHECK(rows == 6 * 133);
 }
 
 }  // namespace glint::core
