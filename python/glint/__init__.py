@@ -9,7 +9,7 @@
 """
 from __future__ import annotations
 
-from .lazy import getter
+from .lazy import public
 
 # These are the public names of each module. A module is imported when one of its names is first asked for.
 _NAMES = {
@@ -27,10 +27,4 @@ _NAMES = {
     "table": "Table",
     "trace": "Slice Trace",
 }
-_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
-__all__ = sorted(_HOMES)
-__getattr__ = getter(__name__, _HOMES)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__all__, __getattr__, __dir__ = public(__name__, _NAMES)

@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import Any, Callable, Mapping
 
 
-def getter(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """Returns a package's `__getattr__`. `homes` names the module of each name, and the module itself where both are equal."""
+def public(package: str, names: Mapping[str, str], *own: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """Returns a package's `__all__`, `__getattr__` and `__dir__`. `names` has the public names of each module, separated by blanks; a name that is equal to
+    its module's is the module itself. `own` are names that the package has itself."""
+    homes = {name: module for module, all_of_it in names.items() for name in all_of_it.split()}
+    exported = sorted([*homes, *own])
 
     def get(name: str) -> Any:
         if name not in homes:
@@ -16,4 +20,7 @@ def getter(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
         module = importlib.import_module(f".{homes[name]}", package)
         return module if homes[name] == name else getattr(module, name)
 
-    return get
+    def listed() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *exported})
+
+    return exported, get, listed

@@ -4,13 +4,7 @@
 from __future__ import annotations
 
 from ..errors import SweepError
-from ..lazy import getter
+from ..lazy import public
 
 _NAMES = {"collecting": "Collection collect", "definition": "Definition", "running": "Engine Status read run status", "store": "Store"}
-_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
-__all__ = sorted([*_HOMES, "SweepError"])
-__getattr__ = getter(__name__, _HOMES)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__all__, __getattr__, __dir__ = public(__name__, _NAMES, "SweepError")
