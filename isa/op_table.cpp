@@ -1,6 +1,5 @@
 // Joins the op families into one table for each SIMD path, and finds the path of this machine.
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <map>
 #include <vector>
 
@@ -24,11 +23,11 @@ std::span<const FamilyEntry> family_entries();
 
 namespace {
 
-std::vector<OpRow> joined(Path path) {
-  const auto entries = path == Path::Avx512 ? avx512::family_entries()
-                       : path == Path::Avx2 ? avx2::family_entries()
-                                            : baseline::family_entries();
+std::vector<OpRow> joined(std::span<const FamilyEntry> entries) {
+  size_t count = 0;
+  for (const FamilyEntry& entry : entries) count += entry.rows().count;
   std::vector<OpRow> out;
+  out.reserve(count);  // A row is large, so growing would copy megabytes.
   for (const FamilyEntry& entry : entries) {
     const RowList list = entry.rows();
     out.insert(out.end(), list.rows, list.rows + list.count);
@@ -65,10 +64,18 @@ bool is_supported(Path path) {
          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 }
 
+// A table is made when it is first wanted, because a run needs one of the three.
 std::span<const OpRow> op_table(Path path) {
-  static const std::array<std::vector<OpRow>, size_t(Path::Count)> tables = {
-      joined(Path::Baseline), joined(Path::Avx2), joined(Path::Avx512)};
-  return tables[size_t(path)];
+  if (path == Path::Avx512) {
+    static const std::vector<OpRow> table = joined(avx512::family_entries());
+    return table;
+  }
+  if (path == Path::Avx2) {
+    static const std::vector<OpRow> table = joined(avx2::family_entries());
+    return table;
+  }
+  static const std::vector<OpRow> table = joined(baseline::family_entries());
+  return table;
 }
 
 std::span<const OpRow> op_table() {

@@ -168,13 +168,14 @@ void SceneWorld::upload_geometry(const RenderJob& job, scenes::Scene* drain) {
   }
   const std::span vertices = bind_new<scenes::Vertex>(kVertices, "vertices", num_vertices);
   const std::span indices = bind_new<uint32_t>(kIndices, "indices", num_indices);
+  const uint32_t threads = host_threads(job.threads);
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const Model& model = scene.models[i];
     const auto [first_index, first_vertex] = offsets[i];
     uploaded_.push_back({vertices.subspan(first_vertex, model.vertices.size()),
                          indices.subspan(first_index, model.indices.size())});
-    copy(model.vertices, vertices.data() + first_vertex, host_threads(job.threads));
-    copy(model.indices, indices.data() + first_index, host_threads(job.threads));
+    copy(model.vertices, vertices.data() + first_vertex, threads);
+    copy(model.indices, indices.data() + first_index, threads);
     if (!drain) continue;
     release(drain->models[i].vertices);
     release(drain->models[i].indices);
