@@ -14,7 +14,7 @@ namespace glint::mem {
 
 MemorySystem::MemorySystem(const Params& params, uint32_t num_cores, double core_mhz, stats::Group* parent)
     : group_(parent, "memory"),
-      map_(params.dram.channels, params.l2.slices, params.interleave, params.hash == "mixed"),
+      map_(params.dram.channels, params.l2.slices, params.interleave, slice_hash(params.hash)),
       network_(params.noc.topology.make({params.noc, num_cores, params.num_slices()})) {
   for (uint32_t c = 0; c < num_cores; ++c) {
     core_groups_.push_back(std::make_unique<stats::Group>(&group_, fmt::format("core[{}]", c)));

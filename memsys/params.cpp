@@ -129,6 +129,11 @@ void check(const Params& p, Diagnostics& diagnostics, const std::string& section
       fmt::format("'noc.far_latency' is {}, and 'noc.sides' is 1: nothing lies far", p.noc.far_latency));
   c.require(p.num_slices() <= 4096,
             fmt::format("'dram.channels' x 'l2.slices' is {}, expected at most 4096", p.num_slices()));
+  c.require(
+      p.hash != "classes" || SliceClasses::fits(p.num_slices()),
+      fmt::format("'hash' is classes, and 'dram.channels' x 'l2.slices' is {}, expected 64, 80, 96 or 128",
+                  p.num_slices()),
+      "set 'hash' to mixed");
   check_dram(p.dram, p.line, p.interleave, c);
 }
 
@@ -136,7 +141,7 @@ std::vector<std::string> l1_allocations() {
   return {"on_fill", "on_miss"};
 }
 std::vector<std::string> partition_hashes() {
-  return {"mixed", "none"};
+  return {"mixed", "classes", "none"};
 }
 
 }  // namespace glint::mem

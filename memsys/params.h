@@ -18,7 +18,7 @@ namespace glint::mem {
 // The defaults are the mobile part of Vulkan-Sim 2.0 and LumiBench (8 cores, 4 channels), with physical DRAM
 // timing.
 std::vector<std::string> l1_allocations();    // returns on_fill and on_miss
-std::vector<std::string> partition_hashes();  // returns mixed and none
+std::vector<std::string> partition_hashes();  // returns mixed, classes and none
 
 struct L1Params {
   uint64_t size = 32 * 1024;  // Vulkan-Sim MOBILE: S:1:128:256
@@ -138,7 +138,8 @@ struct L2Params {
   uint32_t mshr_merges = 4;
   uint32_t dram_queue = 64;  // Vulkan-Sim: dram_partition_queues
   // Choice: vendors do not publish it. An H200 takes 2 cycles, and 1/8 cycle per lane (docs/validation.md).
-  double atomic_interval = 2;
+  double read_interval = 0, read_visit = 0;
+  double atomic_interval = 2, atomic_visit = 0;
   double atomic_whole_interval = 0, atomic_float_interval = 0, atomic_lane_interval = 0,
          atomic_answer_interval = 0;
   // A write takes 1.25 cycles on an H200, with one more for each whole sector and 1.31 for each sector that
@@ -165,6 +166,11 @@ struct L2Params {
               1, 10000),
         param(&L2Params::sectors_per_cycle, "sectors_per_cycle", "sector/cycle",
               "Number of sectors that a slice reads or writes per cycle.", 0, 64),
+        param(&L2Params::read_interval, "read_interval", "cycle",
+              "Slice cycles per sector of a read, in steps of 1/16. 0: `sectors_per_cycle` tells them.", 0.0,
+              1000.0),
+        param(&L2Params::read_visit, "read_visit", "cycle",
+              "Fewest slice cycles per read, in steps of 1/16, when `read_interval` is not 0.", 0.0, 1000.0),
         param(&L2Params::mshr_entries, "mshr_entries", "line",
               "Largest number of lines that are on their way to the slice at once.", 0, 1 << 16),
         param(&L2Params::mshr_merges, "mshr_merges", "request",
@@ -177,6 +183,10 @@ struct L2Params {
               "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns, in "
               "steps of 1/16.",
               1.0, 1000.0),
+        param(&L2Params::atomic_visit, "atomic_visit", "cycle",
+              "Extra slice cycles per atomic at another line than the slice's atomic before it, in steps of "
+              "1/16.",
+              0.0, 1000.0),
         param(&L2Params::atomic_whole_interval, "atomic_whole_interval", "cycle",
               "Slice cycles per turn of an atomic whose turns all have eight words of a sector, in steps of "
               "1/16. 0: these are as long as others.",
@@ -188,8 +198,10 @@ struct L2Params {
         param(&L2Params::atomic_lane_interval, "atomic_lane_interval", "cycle",
               "Extra slice cycles per lane of an atomic, in steps of 1/16.", 0.0, 1000.0),
         param(&L2Params::atomic_answer_interval, "atomic_answer_interval", "cycle",
-              "Extra slice cycles per lane of an atomic that returns the old value, in steps of 1/16.", 0.0,
-              1000.0),
+              "Extra slice cycles per lane of an atomic that returns the old value and is at another line "
+              "than the "
+              "slice's atomic before it, in steps of 1/16.",
+              0.0, 1000.0),
         param(&L2Params::write_visit, "write_visit", "cycle",
               "Fixed slice cycles per write, plus one cycle per sector. 0: there is no fixed cost, and "
               "sectors cost the same as for reads.",
@@ -223,7 +235,9 @@ struct Params {
               "Number of consecutive bytes that stay in one partition.", 0, 1 << 20),
         choice(&Params::hash, "hash",
                "Selects how chunks of `interleave` bytes spread over the L2 slices: a hash rotates the order "
-               "of the slices in each round, or every round has the same order.",
+               "of the slices in each round, units of 64 chunks take 32 slices of a half each as on GPUs "
+               "with 80 "
+               "and 96 slices, or every round has the same order.",
                &partition_hashes),
         section(&Params::l1, "l1", "Parameters of the data cache of each core (L1)."),
         section(&Params::noc, "noc", "Parameters of the network between cores and L2 slices."),

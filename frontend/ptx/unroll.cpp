@@ -58,6 +58,7 @@ class CountedLoop {
       return all(is_no_barrier) && unroll_with_exits(draft_, program_, at_, body_, count_);
     if (!count_.find(block.code.back()) || block.code.back().operands[0].reg != block.condition) return false;
     test_ = is_wide() ? &tests_of_pairs_ : &tests_of_words_;
+    is_unsigned_ = block.code.back().op == test_->lt_unsigned;
     // A load of one value counts twice, and one of a vector once.
     const bool waits = !all(is_no_barrier);
     const size_t size =
@@ -102,10 +103,10 @@ class CountedLoop {
                                         kMoreForLoad * loads(isa::Space::Global));
   }
 
-  // Returns true for `setp.ne p, r, 0` after r was decremented, and for a signed `setp.lt p, r, bound` after
-  // r was incremented.
+  // Returns true for `setp.ne p, r, 0` after r was decremented, and for `setp.lt p, r, bound` after r was
+  // incremented.
   bool counts_to_end(const VirtualInst& test) {
-    counts_up_ = test.op == test_->lt;
+    counts_up_ = test.op == test_->lt || is_unsigned_;
     if (counts_up_) return *body_.step(count_.counter()) > 0;
     return test.op == test_->ne && *body_.step(count_.counter()) < 0 && is_constant(count_.end()) &&
            count_.end().constant == 0;
@@ -183,7 +184,10 @@ class CountedLoop {
     DraftBlock& block = draft_.blocks[at];
     block.end = DraftBlock::End::Branch;
     block.condition = program_.new_register(RegisterClass::Predicate);
-    const uint16_t op = counts_up_ ? test_->lt : turns > 1 ? test_->gt : test_->ne;
+    const uint16_t op = is_unsigned_ ? test_->lt_unsigned
+                        : counts_up_ ? test_->lt
+                        : turns > 1  ? test_->gt
+                                     : test_->ne;
     block.code.push_back(make_inst(
         op, {VirtualOperand::of(block.condition), VirtualOperand::of(count_.counter()), limit(turns)},
         block.line));
@@ -196,20 +200,23 @@ class CountedLoop {
     const int64_t way = *body_.step(count_.counter()) * (turns - 1);
     if (!counts_up_) return number(-way);
     if (turns == 1) return count_.end();
-    const int64_t least = is_wide() ? INT64_MIN : INT32_MIN;
+    const int64_t least = is_unsigned_ ? 0 : is_wide() ? INT64_MIN : INT32_MIN;
     const auto reduced = [&](int64_t end) { return end < least + way ? least : end - way; };
-    if (is_constant(count_.end()))
-      return number(reduced(is_wide() ? int64_t(count_.end().constant)
-                                      : int64_t{int32_t(uint32_t(count_.end().constant))}));
+    if (is_constant(count_.end())) {
+      const uint64_t end = count_.end().constant;
+      if (is_unsigned_) return number(int64_t(end < uint64_t(way) ? 0 : end - uint64_t(way)));
+      return number(reduced(is_wide() ? int64_t(end) : int64_t{int32_t(uint32_t(end))}));
+    }
     const auto [found, is_new] = limits_.try_emplace(turns, kNoRegister);
     if (is_new) {
       found->second = program_.new_register(program_.registers[count_.counter()]);
       const VirtualOperand to = VirtualOperand::of(found->second);
       const isa::Line& line = draft_.blocks[at_].line;
       std::vector<VirtualInst> code;
-      if (is_wide()) {
-        code.push_back(make_inst(max_s64_, {to, count_.end(), number(least + way)}, line));
-        code.push_back(make_inst(sub_s64_, {to, to, number(way)}, line));
+      if (is_wide() || is_unsigned_) {
+        code.push_back(make_inst(is_unsigned_ ? test_->max_unsigned : max_s64_,
+                                 {to, count_.end(), number(least + way)}, line));
+        code.push_back(make_inst(is_wide() ? sub_s64_ : sub_s32_, {to, to, number(way)}, line));
       } else {
         code.push_back(make_inst(sub_sat_s32_, {to, count_.end(), number(way)}, line));
       }
@@ -257,19 +264,21 @@ class CountedLoop {
   LoopBody body_;
   LoopCounter count_;
   const Ops ops_;
-  // Names the tests of a counter.
+  // Names the tests of a counter, and the op that bounds of unsigned tests need.
   struct Tests {
-    uint16_t ne, gt, lt;
+    uint16_t ne, gt, lt, lt_unsigned, max_unsigned;
   };
   const Tests tests_of_words_ = {isa::op_index("setp.ne.s32"), isa::op_index("setp.gt.s32"),
-                                 isa::op_index("setp.lt.s32")};
+                                 isa::op_index("setp.lt.s32"), isa::op_index("setp.lt.u32"),
+                                 isa::op_index("max.u32")};
   const Tests tests_of_pairs_ = {isa::op_index("setp.ne.s64"), isa::op_index("setp.gt.s64"),
-                                 isa::op_index("setp.lt.s64")};
-  const uint16_t sub_sat_s32_ = isa::op_index("sub.sat.s32"), sub_s64_ = isa::op_index("sub.s64"),
-                 max_s64_ = isa::op_index("max.s64");
+                                 isa::op_index("setp.lt.s64"), isa::op_index("setp.lt.u64"),
+                                 isa::op_index("max.u64")};
+  const uint16_t sub_sat_s32_ = isa::op_index("sub.sat.s32"), sub_s32_ = isa::op_index("sub.s32"),
+                 sub_s64_ = isa::op_index("sub.s64"), max_s64_ = isa::op_index("max.s64");
   const Tests* test_ = &tests_of_words_;
   const uint16_t and_pred_ = isa::op_index("and.pred");
-  bool counts_up_ = false;
+  bool counts_up_ = false, is_unsigned_ = false;
   std::map<int64_t, VirtualRegister> limits_;  // by number of turns, if the bound is in a register
   BlockId first_block_ = kNoBlock;             // first of the new blocks
   std::vector<BlockId> layout_;                // the new blocks, in order

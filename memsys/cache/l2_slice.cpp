@@ -20,6 +20,9 @@ Cycle parts_of(double cycles, Cycle parts) {
 L2Slice::L2Slice(const Params& params, uint32_t index, const PartitionMap& map, SlicePort port,
                  stats::Group* parent, const std::string& name)
     : params_(params.l2),
+      read_parts_(parts_of(params.l2.read_interval, kParts)),
+      read_visit_parts_(parts_of(params.l2.read_visit, kParts)),
+      atomic_visit_parts_(parts_of(params.l2.atomic_visit, kParts)),
       visit_parts_(parts_of(params.l2.write_visit, kParts)),
       partial_parts_(parts_of(params.l2.partial_interval, kParts)),
       turn_parts_(parts_of(params.l2.atomic_interval, kParts)),
@@ -147,22 +150,29 @@ void L2Slice::serve(Cycle now) {
   ++packets_received_;
   port_.take(now);
   occupy(now, packet);
+  if (is_atomic(packet)) atomic_line_ = packet.line;
   if (packet.write) written_until_ = busy_until_;
 }
 
 Cycle L2Slice::service_parts(const Packet& packet) const {
-  if (!is_atomic(packet)) return sector_cycles(packet.sectors) * kParts;
-  const Cycle lane = packet.write ? lane_parts_ : lane_parts_ + answer_parts_;
+  if (!is_atomic(packet)) return read_parts(packet.sectors);
+  const bool is_other_line = packet.line != atomic_line_;
+  const Cycle lane = packet.write || !is_other_line ? lane_parts_ : lane_parts_ + answer_parts_;
   const Cycle turns = num_turns(packet);
   const bool is_float = float_parts_ > 0 && packet.atomic.adds_floats;
   const bool is_whole = whole_parts_ > 0 && packet.atomic.lanes == turns * (kSectorBytes / 4);
   return turns * (is_float   ? float_parts_
                   : is_whole ? whole_parts_
                              : turn_parts_) +
-         packet.atomic.lanes * lane;
+         packet.atomic.lanes * lane + (is_other_line ? atomic_visit_parts_ : 0);
 }
 
-// Keeps the slice busy with a packet. Writes may take parts of cycles: a packet that waited for the one
+Cycle L2Slice::read_parts(uint8_t sectors) const {
+  return read_parts_ == 0 ? sector_cycles(sectors) * kParts
+                          : std::max(read_visit_parts_, num_sectors(sectors) * read_parts_);
+}
+
+// Keeps the slice busy with a packet. Packets may take parts of cycles: one that waited for the one
 // before begins in the part in which that packet ended.
 void L2Slice::occupy(Cycle now, const Packet& packet) {
   const bool is_write = packet.write && !is_atomic(packet);

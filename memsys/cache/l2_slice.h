@@ -145,6 +145,7 @@ class L2Slice {
   void answer_present(Cycle now, const Packet& packet, uint8_t missing);
   Reply reply_to(const Packet& packet, uint8_t sectors) const;
   Cycle service_parts(const Packet& packet) const;
+  Cycle read_parts(uint8_t sectors) const;
   Cycle write_parts(const Packet& packet) const;
   void occupy(Cycle now, const Packet& packet);
   Cycle sector_cycles(uint8_t sectors) const {
@@ -162,6 +163,7 @@ class L2Slice {
   static constexpr Cycle kParts = 16;  // number of parts of a cycle
 
   const L2Params params_;
+  const Cycle read_parts_, read_visit_parts_, atomic_visit_parts_;
   const Cycle visit_parts_, partial_parts_, turn_parts_, whole_parts_, float_parts_, lane_parts_,
       answer_parts_;
   const uint32_t line_bytes_, atom_sectors_;
@@ -178,7 +180,8 @@ class L2Slice {
   Ring<ToDram> to_dram_;
   Ring<DirtyLine> displaced_;  // by warm(); they are still to be written back
   Cycle busy_until_ = 0;
-  Cycle busy_parts_ = 0;  // busy_until_ in parts of a cycle, before it was rounded up
+  Cycle busy_parts_ = 0;               // busy_until_ in parts of a cycle, before it was rounded up
+  Address atomic_line_ = ~Address{0};  // line of the last atomic
   Cycle written_until_ = 0;
   Cycle accounted_ = 0;
   SliceCycle blocked_ = SliceCycle::Count;  // why the oldest packet was refused; Count: it was not tried

@@ -38,7 +38,7 @@ MemoryModel::MemoryModel(const mem::Params& params, uint32_t num_cores, double c
     : params_(params),
       timing_(params.dram),
       core_per_dram_(core_mhz / params.dram.clock_mhz),
-      partitions_(params.dram.channels, params.l2.slices, params.interleave, params.hash == "mixed"),
+      partitions_(params.dram.channels, params.l2.slices, params.interleave, mem::slice_hash(params.hash)),
       dram_map_(params.dram.banks, params.dram.bank_groups, params.dram.row_bytes, params.interleave) {
   for (uint32_t i = 0; i < num_cores; ++i)
     cores_.push_back(

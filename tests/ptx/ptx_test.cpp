@@ -218,6 +218,34 @@ TEST_CASE(
   CHECK(count(shaped(body("shr.u32 %r1,%lane,5;", "mov.u32 %r6,%ntid.x;", waits)), "setp.lt.s32") == 1);
 }
 
+TEST_CASE("a loop that counts up to an unsigned bound runs four turns at a time, and any number of them") {
+  // %r2 shows the turns of each lane.
+  const auto words = [](const std::string& start, const std::string& bound) {
+    return "mov.u32 %r1," + start + ";" + bound +
+           "mov.u32 %r2,7;\nLOOP: mad.lo.u32 %r2,%r2,5,%r1;add.u32 %r1,%r1,3;setp.lt.u32 %p1,%r1,%r6;@%p1 "
+           "bra "
+           "LOOP;\nadd.u32 %out,%r2,%r1;\n";
+  };
+  const auto pairs = [](const std::string& start, const std::string& bound) {
+    return "mov.u64 %rd1," + start + ";" + bound +
+           "mov.u32 %r2,7;\nLOOP: cvt.u32.u64 %r1,%rd1;mad.lo.u32 %r2,%r2,5,%r1;add.u64 "
+           "%rd1,%rd1,3;setp.lt.u64 "
+           "%p1,%rd1,%rd6;@%p1 bra LOOP;\nadd.u32 %out,%r2,%r1;\n";
+  };
+  const std::string by_lane = "mov.u32 %r6,%lane;";
+  const std::string text = shaped(words("2", by_lane));
+  CHECK(count(text, "mad.lo.u32 %r") >= 7);
+  CHECK(count(text, "setp.lt.u32") == 6);  // for 4, 4, 2, 2 and 1 turns, and for the loop itself
+  CHECK(count(shaped(words("%lane", "mov.u32 %r6,40;")), "setp.lt.u32") == 6);
+  shaped(words("%lane", "mov.u32 %r6,5;"));  // The bound is below four turns.
+  shaped(words("4294967280", by_lane));
+  shaped(words("2147483600", "add.u32 %r6,%lane,2147483640;"));
+  shaped(words("4294967200", "sub.u32 %r6,4294967290,%lane;"));
+  CHECK(count(shaped(pairs("2", "cvt.u64.u32 %rd6,%lane;")), "setp.lt.u64") == 6);
+  shaped(pairs("4294967290", "cvt.u64.u32 %rd6,%lane;add.u64 %rd6,%rd6,4294967296;"));
+  shaped(pairs("-9223372036854775808", "cvt.u64.u32 %rd6,%lane;add.u64 %rd6,%rd6,-9223372036854775800;"));
+}
+
 TEST_CASE("the negation of a product is part of what reads it, to the bit") {
   const std::string text = shaped(
       "cvt.rn.f32.u32 %f6,%lane;sub.rn.f32 %f1,%f6,0f40A00000;mov.u32 %r1,0;mov.u32 %r2,0;\n"

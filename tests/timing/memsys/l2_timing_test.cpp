@@ -269,7 +269,7 @@ TEST_CASE(
 }
 
 TEST_CASE("without a hash, consecutive chunks go round the slices") {
-  const PartitionMap map(3, 2, 256, false);
+  const PartitionMap map(3, 2, 256, SliceHash::None);
   for (Address chunk = 0; chunk < 60; ++chunk) {
     CHECK(map.slice(chunk * 256) == chunk % 6);
     CHECK(map.partition(chunk * 256) == chunk % 6 / 2);

@@ -122,6 +122,36 @@ TEST_CASE("a turn of an atomic that has all words of its sector takes its own ti
   }
 }
 
+TEST_CASE("reads take their visit or the time of their sectors, whichever is longer") {
+  Params params = bare();
+  params.l2.sectors_per_cycle = 2;
+  const Cycle one = l2_latency(params, read(kLine, 1)), two = l2_latency(params, read(kLine, 1, 0b11));
+  params.l2.read_interval = 1.5;
+  params.l2.read_visit = 4;
+  CHECK(l2_latency(params, read(kLine, 1)) == one + 4 - 1);
+  CHECK(l2_latency(params, read(kLine, 1, 0b11)) == two + 4 - 1);
+  params.l2.read_visit = 1.25;
+  CHECK(l2_latency(params, read(kLine, 1)) == one + 2 - 1);
+  CHECK(l2_latency(params, read(kLine, 1, 0b11)) == two + 3 - 1);
+}
+
+TEST_CASE("an atomic at another line than the one before it takes its visit of the slice") {
+  Params params = bare();
+  params.l2.atomic_visit = 7;
+  CHECK(l2_latency(params, atomic(kLine, 1)) == kL2Hit + 2 - 1 + 7);
+  for (const Address second : {kLine, kLine + 128}) {
+    MemoryRig rig(params, 2);
+    rig.read_latency(kLine, 0b1111, true);
+    rig.read_latency(kLine + 128, 0b1111, true);
+    const size_t before = rig.answers().size();
+    REQUIRE(rig.l1(0).access(rig.now(), Client::Lsu, atomic(kLine, 1)));
+    REQUIRE(rig.l1(1).access(rig.now(), Client::Lsu, atomic(second, 2)));
+    rig.drain();
+    REQUIRE(rig.answers().size() == before + 2);
+    CHECK(rig.answers()[before + 1].at - rig.answers()[before].at == (second == kLine ? 2 : 2 + 7));
+  }
+}
+
 TEST_CASE("an atomic that returns old values takes its further part of the slice for each lane") {
   Params params = bare();
   params.l2.atomic_interval = 1.5;
