@@ -1,3 +1,3 @@
 if(TARGET glint::backend)
-  glint_test(unit_backend ALONE FOLDER unit/backend LINKS glint::backend)
+  glint_test(unit_backend FOLDER unit/backend LINKS glint::backend)
 endif()

@@ -1,7 +1,7 @@
 # Adds tests of cores and their parts, which the engine loop drives.
 glint_test(unit_core_timing LINKS glint::pipeline
   SOURCES unit/core/alarms_test.cpp unit/core/coalesce_test.cpp unit/core/params_test.cpp unit/core/regrouping_test.cpp unit/core/lsu_test.cpp unit/engine/engine_loop_test.cpp)
-glint_test(timing_core ALONE LINKS glint::pipeline SOURCES timing/core_test.cpp timing/core_limits_test.cpp timing/skip_test.cpp timing/block_test.cpp)
+glint_test(timing_core LINKS glint::pipeline SOURCES timing/core_test.cpp timing/core_limits_test.cpp timing/skip_test.cpp timing/block_test.cpp)
 glint_test(contract_issue_scheduler LINKS glint::core SOURCES contract/issue_scheduler_test.cpp)
 glint_test(contract_reorder LINKS glint::core SOURCES contract/reorder_test.cpp)
 glint_test(contract_parking LINKS glint::core SOURCES contract/parking_test.cpp)

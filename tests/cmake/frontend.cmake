@@ -1,3 +1,3 @@
 if(TARGET glint::frontend)
-  glint_test(unit_frontend ALONE FOLDER unit/frontend LINKS glint::frontend glint::core)
+  glint_test(unit_frontend FOLDER unit/frontend LINKS glint::frontend glint::core)
 endif()

@@ -1,4 +1,4 @@
-glint_test(unit_rtunit ALONE FOLDER unit/rtunit LINKS glint::rtunit)
+glint_test(unit_rtunit FOLDER unit/rtunit LINKS glint::rtunit)
 glint_test(property_rtunit FOLDER property/rtunit LINKS glint::rtunit embree)
 glint_test(timing_rtunit FOLDER timing/rtunit LINKS glint::rtunit)
 file(GLOB rt_contracts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/contract/rt_*_test.cpp)

@@ -1,5 +1,5 @@
 find_package(nlohmann_json REQUIRED)
-glint_test(vulkan_rt ALONE LINKS glint::pipeline glint::frontend nlohmann_json::nlohmann_json ${GLINT_ZSTD}
+glint_test(vulkan_rt LINKS glint::pipeline glint::frontend nlohmann_json::nlohmann_json ${GLINT_ZSTD}
   SOURCES vulkan_rt/conformance_test.cpp vulkan_rt/formats_test.cpp vulkan_rt/software_test.cpp vulkan_rt/conformance_world.cpp vulkan_rt/compare.cpp vulkan_rt/recording.cpp)
 target_include_directories(test_vulkan_rt PRIVATE ${GLINT_ZSTD_INCLUDE})
 find_library(VULKAN_LOADER vulkan)

@@ -3,7 +3,7 @@
 #include "tests/faults/faults.h"
 #include "tests/support/catch.h"
 
-namespace glint::test {
+namespace glint::test::rays_test {
 namespace {
 
 using Catch::Contains;
@@ -115,4 +115,4 @@ TEST_CASE("traces deeper than the pipeline allows stop the run also when faults 
   }
 }
 
-}  // namespace glint::test
+}  // namespace glint::test::rays_test

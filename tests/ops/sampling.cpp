@@ -66,21 +66,21 @@ struct Axes {
 constexpr Axes kFaces[] = {{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
                            {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
                            {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-double dot(const Vector& a, const Vector& b) {
+double product(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 // Returns the face whose own direction is nearest. Of equals, z goes before y and y before x.
 int64_t face_of(const Vector& direction) {
   int64_t best = 5;
   for (int64_t face = 5; face >= 0; --face)
-    if (dot(kFaces[face].r, direction) > dot(kFaces[best].r, direction)) best = face;
+    if (product(kFaces[face].r, direction) > product(kFaces[best].r, direction)) best = face;
   return best;
 }
 // Returns s and t from -1 to 1 on the face.
 Vector on_face(int64_t face, const Vector& direction) {
   const Axes& axes = kFaces[face];
-  const double r = dot(axes.r, direction);
-  return {dot(axes.s, direction) / r, dot(axes.t, direction) / r, 0};
+  const double r = product(axes.r, direction);
+  return {product(axes.s, direction) / r, product(axes.t, direction) / r, 0};
 }
 
 }  // namespace
@@ -119,10 +119,10 @@ double Sampling::lod_of(const Request& request) {
     Vector d = change;
     if (geometry_.is_cube) {
       const Axes& axes = kFaces[face_of(request.at)];
-      const double r = dot(axes.r, request.at), dr = dot(axes.r, change);
+      const double r = product(axes.r, request.at), dr = product(axes.r, change);
       // This is the derivative of (s / r + 1) / 2.
-      d = {(dot(axes.s, change) * r - dot(axes.s, request.at) * dr) / (2 * r * r),
-           (dot(axes.t, change) * r - dot(axes.t, request.at) * dr) / (2 * r * r), 0};
+      d = {(product(axes.s, change) * r - product(axes.s, request.at) * dr) / (2 * r * r),
+           (product(axes.t, change) * r - product(axes.t, request.at) * dr) / (2 * r * r), 0};
     }
     double sum = 0;
     for (int axis = 0; axis < geometry_.axes; ++axis)

@@ -106,15 +106,15 @@ std::vector<uint32_t> operands_of(const Texture& op, uint32_t handle, const Requ
 }
 
 // Holds what the lanes give to the op, and what they should get: numbers, because filters round.
-struct Plan {
+struct TexturePlan {
   std::vector<std::vector<uint32_t>> operands;
   std::vector<Colour> expected;
   std::vector<const Format*> format;
 };
 
-Plan sampling_plan(const Texture& op, OpLab& lab, const std::vector<PlainImage>& images, const Spaces& spaces,
-                   Random& random) {
-  Plan out;
+TexturePlan sampling_plan(const Texture& op, OpLab& lab, const std::vector<PlainImage>& images,
+                          const Spaces& spaces, Random& random) {
+  TexturePlan out;
   for (const PlainImage& image : images) lab.world.images[image.handle].sampler = sampler_for(op, random);
   for (int i = 0; i < 20; ++i) lab.world.samplers.push_back(sampler_for(op, random));
   while (out.operands.size() < kThreads) {
@@ -137,9 +137,9 @@ Plan sampling_plan(const Texture& op, OpLab& lab, const std::vector<PlainImage>&
 
 // Fetches name texels by integers. Outside of the image, robust access reads zeros, and one where the format
 // has no alpha.
-Plan fetch_plan(const Texture& op, const std::vector<PlainImage>& images, const Spaces& spaces,
-                Random& random) {
-  Plan out;
+TexturePlan fetch_plan(const Texture& op, const std::vector<PlainImage>& images, const Spaces& spaces,
+                       Random& random) {
+  TexturePlan out;
   for (size_t t = 0; t < kThreads; ++t) {
     const PlainImage& image = images[random.below(uint32_t(images.size()))];
     const bool strays = random.below(4) == 0;
@@ -169,7 +169,8 @@ Plan fetch_plan(const Texture& op, const std::vector<PlainImage>& images, const 
 }
 
 // Returns how a lane's words differ from the expected numbers, or "".
-std::string wrong_words(const Texture& op, const Plan& plan, const Outcome& outcome, uint64_t enabled) {
+std::string wrong_words(const Texture& op, const TexturePlan& plan, const Outcome& outcome,
+                        uint64_t enabled) {
   for (size_t t = 0; t < kThreads; ++t)
     for (size_t i = 0; i < op.results; ++i) {
       const uint32_t is = outcome.results[i][t];
@@ -195,7 +196,7 @@ uint64_t check_once(const isa::OpRow& row, const Texture& op, uint64_t enabled, 
   Spaces before = lab.random_spaces(random);
   fill_moderate(images, before, random);
   lab.world.robust_images = true;
-  const Plan plan =
+  const TexturePlan plan =
       op.fetches ? fetch_plan(op, images, before, random) : sampling_plan(op, lab, images, before, random);
   REQUIRE(lab.num_sources() == plan.operands.front().size());
   REQUIRE(lab.num_results() == op.results);

@@ -17,7 +17,7 @@ using namespace glint;
 
 namespace {
 
-constexpr uint32_t kSize = 64;
+constexpr uint32_t kAlphaSize = 64;
 
 // Returns a quad of x, y in [-1, 1] that faces the camera under the sky. Its texture has two texels side by
 // side, the left one with alpha 0; between their centres, u = 1/4 and 3/4, alpha is filtered and not zero.
@@ -50,7 +50,7 @@ struct Choices {
   std::string shader_dir = {};
 };
 pipeline::RenderResult picture(bool with_quad, bool timing, const Choices& choices = {}) {
-  pipeline::RenderJob job = test::small_job("CORNELL", pipeline::Workload::PathTracing, kSize, 1);
+  pipeline::RenderJob job = test::small_job("CORNELL", pipeline::Workload::PathTracing, kAlphaSize, 1);
   job.scene = quad_scene(with_quad);
   job.timing = timing;
   job.gpu.rt.any_hit.name = choices.any_hit;
@@ -70,11 +70,11 @@ pipeline::RenderResult picture(bool with_quad, bool timing, const Choices& choic
 // Returns the column of the pixels that see `x` on the quad's plane, which is 5 away; half the picture is
 // tan(20 deg) * 5 wide.
 uint32_t column(float x) {
-  return uint32_t((x / 1.8199f * 0.5f + 0.5f) * kSize);
+  return uint32_t((x / 1.8199f * 0.5f + 0.5f) * kAlphaSize);
 }
 
 const float* pixel(const pipeline::RenderResult& result, uint32_t x, uint32_t y) {
-  return &result.rgba[4 * (y * kSize + x)];
+  return &result.rgba[4 * (y * kAlphaSize + x)];
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ TEST_CASE("rays pass a texture's transparent texels and meet its opaque ones") {
   const bool timing = GENERATE(false, true);
   const pipeline::RenderResult with = picture(true, timing), without = picture(false, timing);
 
-  for (uint32_t y : {kSize / 2 - 8, kSize / 2, kSize / 2 + 8}) {
+  for (uint32_t y : {kAlphaSize / 2 - 8, kAlphaSize / 2, kAlphaSize / 2 + 8}) {
     for (uint32_t x = column(-0.9f); x < column(-0.6f); ++x)  // u < 1/4: alpha is 0
       for (int c = 0; c < 3; ++c) CHECK(pixel(with, x, y)[c] == pixel(without, x, y)[c]);
     for (uint32_t x = column(0.6f); x < column(0.9f); ++x) {  // u > 3/4: pure green

@@ -6,7 +6,7 @@
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
 
-namespace glint::test {
+namespace glint::test::numbers_test {
 namespace {
 
 uint32_t pcg(uint32_t& state) {
@@ -136,4 +136,4 @@ TEST_CASE("packing and unpacking of halves and normalised integers is exact, als
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::numbers_test

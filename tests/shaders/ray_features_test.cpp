@@ -6,7 +6,7 @@
 #include "tests/shaders/lane_checks.h"
 #include "tests/support/catch.h"
 
-namespace glint::test {
+namespace glint::test::ray_features_test {
 namespace {
 
 bool misses(uint32_t x) {
@@ -222,4 +222,4 @@ TEST_CASE("hit objects keep traced and made-up hits until their shaders are exec
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::ray_features_test

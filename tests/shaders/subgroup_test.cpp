@@ -7,7 +7,7 @@
 #include "tests/shaders/compute_lab.h"
 #include "tests/support/catch.h"
 
-namespace glint::test {
+namespace glint::test::subgroup_test {
 namespace {
 
 constexpr uint32_t kThreads = 64, kWords = 56;
@@ -189,4 +189,4 @@ TEST_CASE("subgroup operations combine the lanes that execute them, and no other
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::subgroup_test

@@ -10,7 +10,7 @@
 #include "tests/shaders/compute_lab.h"
 #include "tests/support/catch.h"
 
-namespace glint::test {
+namespace glint::test::vendor_test {
 namespace {
 
 using Catch::Contains;
@@ -203,4 +203,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::vendor_test

@@ -3,16 +3,13 @@
 #include <cstdint>
 
 #include "tests/support/catch.h"
+#include "tests/timing/core_programs.h"
 #include "tests/unit/core/one_core.h"
 
 namespace glint::core {
 namespace {
 
 using isa::Special;
-
-uint64_t stall(const OneCore& core, Stall reason) {
-  return core.stats().stalls.count(reason);
-}
 
 // Sets %r2 = laneid * stride, a shared address.
 void add_shared_address(Code& code, uint32_t stride) {

@@ -7,7 +7,7 @@
 #include "tests/vulkan/client.h"
 
 // Tests with the tag [portable] hold on every Vulkan device, and run on lavapipe too where it is installed.
-namespace glint::test {
+namespace glint::test::compute_test {
 namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -172,4 +172,4 @@ TEST_CASE("pushed descriptors are those of the launch that follows them", "[port
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::compute_test

@@ -10,7 +10,7 @@
 #include "tests/support/catch.h"
 #include "tests/vulkan/ray_client.h"
 
-namespace glint::test {
+namespace glint::test::descriptor_buffer_test {
 namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -225,4 +225,4 @@ TEST_CASE("a set in a descriptor buffer that is not bound is refused") {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::descriptor_buffer_test

@@ -10,7 +10,7 @@
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
 
-namespace glint::test {
+namespace glint::test::descriptor_test {
 namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -326,4 +326,4 @@ TEST_CASE("more dynamic offsets than the address space has places") {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::descriptor_test

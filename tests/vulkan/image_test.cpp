@@ -10,7 +10,7 @@
 
 // Tests with the tag [graphics] use commands that only graphics queues have in Vulkan; Glint's queue has them
 // too.
-namespace glint::test {
+namespace glint::test::image_test {
 namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -285,4 +285,4 @@ TEST_CASE("a format that shaders cannot store to is not announced as a storage i
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::image_test

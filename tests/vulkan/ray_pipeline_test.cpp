@@ -6,7 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/vulkan/ray_pipeline_client.h"
 
-namespace glint::test {
+namespace glint::test::ray_pipeline_test {
 namespace {
 
 const std::string kHead =
@@ -353,4 +353,4 @@ TEST_CASE("traces say what the timing machine took for them", "[.][traces]") {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::ray_pipeline_test

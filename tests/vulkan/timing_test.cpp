@@ -8,7 +8,7 @@
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
 
-namespace glint::test {
+namespace glint::test::timing_test {
 namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -111,4 +111,4 @@ TEST_CASE("a launch that does not end loses the device", "[.][endless_launch]") 
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::timing_test

@@ -6,7 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
 
-namespace glint::test {
+namespace glint::test::wrong_use_test {
 namespace {
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -136,4 +136,4 @@ TEST_CASE("instances and devices come and go a hundred times", "[portable]") {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::wrong_use_test

@@ -10,7 +10,7 @@
 #include "tests/vulkan_rt/compare.h"
 #include "tests/vulkan_rt/conformance_world.h"
 
-namespace glint::vulkan_rt {
+namespace glint::vulkan_rt::formats_test {
 namespace {
 
 constexpr uint32_t kAnyHitIgnores = 2, kAnyHitTerminates = 3;  // any-hit modes of the recording's shaders
@@ -75,4 +75,4 @@ TEST_CASE("every node format finds in the deferred any-hit mode what bvh6 finds 
 }
 
 }  // namespace
-}  // namespace glint::vulkan_rt
+}  // namespace glint::vulkan_rt::formats_test

@@ -16,7 +16,7 @@ namespace {
 constexpr uint32_t kBanks = 8, kSlots = 32;
 
 // Adds and picks requests at random. Returns the picks in order, and checks each.
-std::vector<uint32_t> exercise(const std::string& name, uint32_t seed) {
+std::vector<uint32_t> order_of(const std::string& name, uint32_t seed) {
   const auto scheduler = PolicyChoice<DramScheduler>(name.c_str()).make({kBanks, kSlots});
   std::mt19937 random(seed);
   std::vector<DramRequest> held(kSlots);
@@ -54,9 +54,9 @@ TEST_CASE("every DRAM scheduler picks each request once, for its bank, and alway
   REQUIRE(Registry<DramScheduler>::names() == std::vector<std::string>{"fcfs", "frfcfs", "write_drain"});
   for (const std::string& name : Registry<DramScheduler>::names()) {
     INFO(name);
-    const std::vector<uint32_t> once = exercise(name, 11);
-    CHECK(once == exercise(name, 11));
-    CHECK(once != exercise(name, 12));
+    const std::vector<uint32_t> once = order_of(name, 11);
+    CHECK(once == order_of(name, 11));
+    CHECK(once != order_of(name, 12));
   }
 }
 

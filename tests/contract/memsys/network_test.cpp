@@ -22,7 +22,7 @@ using namespace glint::mem;
 
 namespace {
 
-PolicyChoice<Network> chosen(const std::string& name, const std::string& params = {}) {
+PolicyChoice<Network> chosen_network(const std::string& name, const std::string& params = {}) {
   PolicyChoice<Network> choice(name.c_str());
   Config config;
   config.add_text("test", params);
@@ -195,7 +195,7 @@ TEST_CASE("every network brings every packet and every reply to its destination 
     for (const Shape shape : kShapes)
       for (const uint32_t credits : {0u, 2u}) {
         CAPTURE(name, shape.cores, shape.slices, credits);
-        Rig rig(chosen(name), shape.cores, shape.slices, with_credits(credits));
+        Rig rig(chosen_network(name), shape.cores, shape.slices, with_credits(credits));
         rig.run_until(60'000);
         REQUIRE(rig.idle());
         const std::vector<Taken> packets = rig.packets_taken(), replies = rig.replies_taken();
@@ -220,7 +220,7 @@ TEST_CASE("with every network, windows and the order of cells change no cycle of
   for (const std::string& name : Registry<Network>::names()) {
     CAPTURE(name);
     const auto run = [&](Cycle window, bool backwards) {
-      Rig rig(chosen(name), 8, 4, with_credits(3));
+      Rig rig(chosen_network(name), 8, 4, with_credits(3));
       rig.run_until(30'000, window ? window : rig.network().shortest_latency(), backwards);
       REQUIRE(rig.idle());
       std::vector<Taken> out = rig.packets_taken();
@@ -239,7 +239,7 @@ TEST_CASE("with every network, windows and the order of cells change no cycle of
 TEST_CASE("every network refuses packets when a slice takes none, and accepts packets again when it does") {
   for (const std::string& name : Registry<Network>::names()) {
     CAPTURE(name);
-    Rig rig(chosen(name), 5, 3, with_credits(4));
+    Rig rig(chosen_network(name), 5, 3, with_credits(4));
     rig.packets = 1'000, rig.only = 1, rig.slices_take = false;
     rig.run_until(20'000);
     const uint64_t held = rig.sent();
@@ -256,7 +256,7 @@ TEST_CASE("every network refuses packets when a slice takes none, and accepts pa
 TEST_CASE("with every network, packets come through while no core takes a reply") {
   for (const std::string& name : Registry<Network>::names()) {
     CAPTURE(name);
-    Rig rig(chosen(name), 6, 4, with_credits(2));
+    Rig rig(chosen_network(name), 6, 4, with_credits(2));
     rig.cores_take = false;
     rig.run_until(60'000);
     CHECK(rig.packets_taken().size() == 6 * 300);
@@ -274,7 +274,7 @@ TEST_CASE("with every network, windows and stepping change no answer of the memo
     const auto run = [&](Cycle window, bool step) {
       Params params;
       params.l1.size = 8 * 128, params.l2.slice_size = 16 * 128, params.l2.ways = 4, params.l2.slices = 2;
-      params.noc.topology = chosen(name);
+      params.noc.topology = chosen_network(name);
       MemoryRig rig(params, 3);
       if (window) rig.set_window(window);
       rig.set_step_every_cycle(step);
@@ -299,7 +299,7 @@ TEST_CASE("with every network, windows and stepping change no answer of the memo
 
 TEST_CASE("the crossbar holds as many packets of a core for a slice as the core has credits") {
   for (const uint32_t credits : {1u, 4u, 19u}) {
-    Rig rig(chosen("crossbar"), 3, 2, with_credits(credits));
+    Rig rig(chosen_network("crossbar"), 3, 2, with_credits(credits));
     rig.only = 0, rig.slices_take = false;
     rig.run_until(5'000);
     CHECK(rig.sent() == 3 * credits);
@@ -307,7 +307,7 @@ TEST_CASE("the crossbar holds as many packets of a core for a slice as the core 
 }
 
 TEST_CASE("the mesh holds as many packets as its buffers on the way have entries") {
-  Rig rig(chosen("mesh", "entry_buffer = 3\nbuffer = 2\nexit_buffer = 4\n"), 1, 1, {});
+  Rig rig(chosen_network("mesh", "entry_buffer = 3\nbuffer = 2\nexit_buffer = 4\n"), 1, 1, {});
   rig.slices_take = false;
   rig.run_until(5'000);
   CHECK(rig.sent() == 3 + 2 + 4);
@@ -318,7 +318,7 @@ TEST_CASE("an unloaded packet crosses the mesh in the time of its hops, its two 
   constexpr int kCores[] = {0, 2, 4, 6}, kSlices[] = {1, 3, 5, 7, 8};  // routers in three rows of three
   for (uint16_t core = 0; core < 4; ++core)
     for (uint16_t slice = 0; slice < 5; ++slice) {
-      const auto network = chosen("mesh", "hop_latency = 5\nport_latency = 9\n").make({params, 4, 5});
+      const auto network = chosen_network("mesh", "hop_latency = 5\nport_latency = 9\n").make({params, 4, 5});
       std::vector<CorePort> cores;
       std::vector<SlicePort> slices;
       for (uint16_t c = 0; c < 4; ++c) cores.push_back(network->core_port(c));
@@ -338,7 +338,8 @@ TEST_CASE("an unloaded packet crosses the mesh in the time of its hops, its two 
 
 TEST_CASE("two cores that share a link of the mesh take turns on it, and it is never idle") {
   NocParams params;
-  const auto network = chosen("mesh").make({params, 2, 1});  // core 1 goes through the router of core 0
+  const auto network =
+      chosen_network("mesh").make({params, 2, 1});  // core 1 goes through the router of core 0
   std::vector<CorePort> cores{network->core_port(0), network->core_port(1)};
   SlicePort slice = network->slice_port(0);
   std::vector<uint16_t> order;

@@ -9,7 +9,7 @@
 #include "tests/unit/backend/code_builder.h"
 #include "tests/unit/backend/random_program.h"
 
-namespace glint::frontend::test {
+namespace glint::frontend::test::emit_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -156,4 +156,4 @@ TEST_CASE("Whatever is assembled passes the verifier") {
 }
 
 }  // namespace
-}  // namespace glint::frontend::test
+}  // namespace glint::frontend::test::emit_test

@@ -14,7 +14,7 @@
 #include "isa/text.h"
 #include "tests/support/catch.h"
 
-namespace glint::frontend {
+namespace glint::frontend::source_lines_test {
 namespace {
 
 // In this text, square() is at line 5, twice() at 8, and main() at 11 to 13.
@@ -245,4 +245,4 @@ TEST_CASE("modules without lines, of older versions or with unknown sets are lef
   CHECK(!with_inline_scopes(words).has_value());
 }
 
-}  // namespace glint::frontend
+}  // namespace glint::frontend::source_lines_test

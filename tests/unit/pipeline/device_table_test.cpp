@@ -10,7 +10,7 @@
 #include "pipeline/launch_builder.h"
 #include "tests/support/catch.h"
 
-namespace glint::pipeline {
+namespace glint::pipeline::device_table_test {
 namespace {
 
 using Catch::Contains;
@@ -153,4 +153,4 @@ TEST_CASE("a table without ray generation, or with a stride that Vulkan forbids,
 }
 
 }  // namespace
-}  // namespace glint::pipeline
+}  // namespace glint::pipeline::device_table_test

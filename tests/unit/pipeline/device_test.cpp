@@ -10,7 +10,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/stat_listing.h"
 
-namespace glint::pipeline {
+namespace glint::pipeline::device_test {
 namespace {
 
 constexpr uint32_t kThreads = 8192;
@@ -133,4 +133,4 @@ TEST_CASE("the sum of two launches has their counters, and ratios of both togeth
 }
 
 }  // namespace
-}  // namespace glint::pipeline
+}  // namespace glint::pipeline::device_test

@@ -9,7 +9,7 @@
 #include "pipeline/functional_machine.h"
 #include "tests/support/catch.h"
 
-namespace glint::pipeline {
+namespace glint::pipeline::launch_builder_test {
 namespace {
 
 using Catch::Contains;
@@ -156,4 +156,4 @@ TEST_CASE("push constants up to the last byte fit, and one more is refused") {
 }
 
 }  // namespace
-}  // namespace glint::pipeline
+}  // namespace glint::pipeline::launch_builder_test

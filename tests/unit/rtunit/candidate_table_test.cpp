@@ -7,7 +7,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 
-namespace glint::rt::test {
+namespace glint::rt::test::candidate_table_test {
 namespace {
 
 // Holds primitives one behind the other along -z, seen from (0, 0, 10): t = 1, 2, ...
@@ -169,4 +169,4 @@ TEST_CASE("a terminated ray is done, and the rest of its table is dropped") {
 }
 
 }  // namespace
-}  // namespace glint::rt::test
+}  // namespace glint::rt::test::candidate_table_test

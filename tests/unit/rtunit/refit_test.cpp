@@ -17,7 +17,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 
-namespace glint::rt::test {
+namespace glint::rt::test::refit_test {
 namespace {
 
 // Returns a sheet of n x n quads, whose triangles share leaves.
@@ -258,4 +258,4 @@ TEST_CASE("fitting to geometry that mixes costs more than building anew") {
 }
 
 }  // namespace
-}  // namespace glint::rt::test
+}  // namespace glint::rt::test::refit_test
