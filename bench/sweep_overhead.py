@@ -1,11 +1,13 @@
 # Measures what a point of a sweep costs besides the simulation: time, bytes and files. A stand-in takes the simulator's place.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: sweep_overhead.py GLINT [POINTS [WORKERS]]
+"""usage: sweep_overhead.py GLINT [POINTS [WORKERS]] (0 points measure tasks alone)
 
 The stand-in copies one finished run, which takes a few milliseconds; the time of it alone is measured too and taken off. Points are checked by the real
 program. docs/scale.md has the figures."""
 import os
 import pathlib
+import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -29,7 +31,7 @@ def definition(points):
 
 
 def main():
-    program, count, workers = str(pathlib.Path(sys.argv[1]).resolve()), int((sys.argv + ["", "2000"])[2] or 2000), int((sys.argv + ["", "", "0"])[3] or 0)
+    program, count, workers = str(pathlib.Path(sys.argv[1]).resolve()), int((sys.argv + ["", ""])[2] or 2000), int((sys.argv + ["", "", "0"])[3] or 0)
     with tempfile.TemporaryDirectory(prefix="sweep-overhead-", dir=os.environ.get("GLINT_BENCH_DIR")) as name:
         folder = pathlib.Path(name)
         subprocess.run([program, "run", "WKND_SH", "--size", "8x8", "--spp", "1", "--stats", "compact", "--out", folder / "run"], check=True, capture_output=True)
@@ -40,27 +42,45 @@ def main():
         for i in range(100):
             subprocess.run([stand_in, "run", f"--out={folder}/alone{i}"], check=True)
         alone = (time.monotonic() - start) / 100
-        measure_tasks(folder, stand_in, alone)
-        measure(folder, stand_in, count, workers or len(os.sched_getaffinity(0)), alone)
+        measure_tasks(folder, stand_in)
+        if count:
+            measure(folder, stand_in, count, workers or len(os.sched_getaffinity(0)), alone)
 
 
-def measure_tasks(folder, stand_in, alone):
-    """Measures tasks as arrays of Slurm run them: a process of Python for each task, which runs its points one after another."""
+def measure_tasks(folder, stand_in):
+    """Measures tasks as arrays of Slurm run them: a process of Python for each task, which runs its points one after another. A stand-in runs alone before each task, and its
+    time is taken off, so that both see the same load. The times are medians."""
     from glint.sweeps.execution import Work, to_json
-    from glint.sweeps.planning import Program, plan
-    program, store, sweep = Program(str(stand_in)), glint.sweeps.Store(folder / "tasks"), glint.sweeps.read(definition(200))
+    from glint.sweeps.planning import plan
+    from glint.sweeps.program import Program
+    program, store, sweep = Program(str(stand_in)), glint.sweeps.Store(folder / "tasks"), glint.sweeps.read(definition(300))
     points, work = plan(sweep, program), Work.of(store, program, sweep)
-    for size in (1, 10, 50):
-        mine, points = points[:size], points[size:]
-        task = folder / f"task{size}.json"
-        task.write_text(to_json(work, mine))
-        start = time.monotonic()
-        subprocess.run([sys.executable, "-S", "-m", "glint.sweeps.worker", task], check=True, env={**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[1] / "python")}, capture_output=True)
-        print(f"a task of {size}: {1000 * ((time.monotonic() - start) / size - alone):.0f} ms a point besides the run")
+    environment = {**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[1] / "python")}
+    for size, turns in ((1, 25), (5, 15), (20, 5), (50, 2)):
+        walls, processors = [], []
+        for turn in range(turns):
+            mine, points = points[:size], points[size:]
+            task = folder / f"task{size}-{turn}.json"
+            task.write_text(to_json(work, mine))
+            alone = times_of([stand_in, "run", f"--out={folder}/alone{size}-{turn}"])
+            whole = times_of([sys.executable, "-S", "-m", "glint.sweeps.worker", task], environment)
+            walls.append(whole[0] / size - alone[0])
+            processors.append(whole[1] / size - alone[1])
+        print(f"a task of {size}: {1000 * statistics.median(walls):.0f} ms a point besides the run ({1000 * min(walls):.0f} to {1000 * max(walls):.0f} in {turns} tasks), "
+              f"{1000 * statistics.median(processors):.0f} ms of a processor")
+
+
+def times_of(words, environment=None):
+    """Runs a command, and returns its seconds on the clock and of a processor, with those of its children."""
+    start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(words, check=True, env=environment, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.monotonic() - start, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def measure(folder, stand_in, count, workers, alone):
-    from glint.sweeps.planning import Program, plan
+    from glint.sweeps.planning import plan
+    from glint.sweeps.program import Program
     sweep = definition(count)
     start = time.monotonic()
     points = plan(glint.sweeps.read(sweep), Program(str(stand_in)))

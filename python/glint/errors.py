@@ -46,3 +46,7 @@ class CommandFailed(GlintError):
 
 class SweepError(GlintError):
     """A sweep, one of its points or a store cannot be used as it is. The message says what to change."""
+
+
+class StoreFull(SweepError):
+    """A store, or the folder for the files of runs, takes no further file. What is done stays, and the sweep goes on when this is mended."""

@@ -3,7 +3,6 @@
 """`Fingerprints` tell a sweep whether a complete point would give the same result today."""
 from __future__ import annotations
 
-import hashlib
 import pathlib
 import re
 import subprocess
@@ -30,7 +29,7 @@ class Fingerprints:
         if workload not in self._known:
             self._known[workload] = " ".join(f"{path.name}:{file_hash(path)}" for path in files_of(pathlib.Path(workload)))
         text = " ".join((self._known["program"], self._known[keys], self._known[workload]))
-        return hashlib.sha256(text.encode()).hexdigest()
+        return _sum(text)
 
     def _configuration(self, config: str, settings: Mapping[str, str]) -> str:
         words = [self._program, "describe", "--config", config]
@@ -39,7 +38,7 @@ class Fingerprints:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         if done.returncode:
             raise CommandFailed(f"{' '.join(words)}\nended with exit code {done.returncode}: {done.stderr.strip()}", done.returncode, done.stderr)
-        return hashlib.sha256(done.stdout.encode()).hexdigest()
+        return _sum(done.stdout)
 
 
 def files_of(path: pathlib.Path) -> list[pathlib.Path]:
@@ -64,7 +63,13 @@ def _is_file(path: pathlib.Path) -> bool:
         return False
 
 
+def _sum(text: str) -> str:
+    import hashlib  # here, because loading it takes a twentieth of the time of a cluster's task to start, which hashes nothing
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
 def file_hash(path: Any) -> str:
     """Returns the SHA-256 of a file."""
+    import hashlib
     with open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

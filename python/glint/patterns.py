@@ -1,7 +1,6 @@
 # Implements patterns of dotted paths, with the meaning they have in docs/metrics.md.
 # SPDX-License-Identifier: Apache-2.0
 """In a pattern, `*` stands for any characters except '.', and brackets stand for themselves, as in `gpu.core[*].l1.*`."""
-import difflib
 import functools
 import re
 from typing import Iterable
@@ -33,5 +32,6 @@ def compiled(pattern: str) -> re.Pattern[str]:
 
 def near(name: str, known: Iterable[str]) -> str:
     """Returns ', did you mean ...?' with up to three names that are similar to `name`, or an empty text."""
+    import difflib  # which only an error needs
     found = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
     return ", did you mean " + " or ".join(f"'{one}'" for one in found) + "?" if found else ""

@@ -8,7 +8,7 @@ import functools
 import pathlib
 import tomllib
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .documents import flat, read_json, read_text
 from .errors import IncompleteRun, MissingFile, SchemaError, UnknownName
@@ -18,7 +18,9 @@ from .derived import Metrics
 from .patterns import near
 from .statistics import Stats
 from .table import Table
-from .trace import Trace
+
+if TYPE_CHECKING:
+    from .trace import Trace
 
 SCHEMA = 1  # of run.json, as report/files/run_directory.cpp writes it
 SHADERS = ("pt", "sh", "ao")  # shaders of scenes; pipelines and kernels list their own files
@@ -180,6 +182,7 @@ class Run:
     @functools.cached_property
     def trace(self) -> Trace:
         """Returns what warps and RT units did cycle by cycle. The run needs `--trace`."""
+        from .trace import Trace  # noqa: F811 (few runs have one)
         return Trace(self.file("trace.json.gz", "--trace"))
 
     @functools.cached_property

@@ -92,6 +92,14 @@ class Effects(SweepTest):
         self.assertAlmostEqual(found["a"], 0.2, delta=0.03)
         self.assertAlmostEqual(found["b"], 0.8, delta=0.03)
 
+    def test_keys_whose_values_come_once_do_not_explain_everything(self):
+        from glint.sweeps.sensitivity import effects
+        rows = [{"a": a, "b": (7 * a) % 16, "y": a} for a in range(16)]  # as in a small sample of wide ranges
+        found = {effect.key: effect.share for effect in effects(rows, ["a", "b"], "y")}
+        self.assertGreater(found["a"], 0.8)
+        self.assertLess(found["b"], 0.5)
+        self.assertEqual([effect.share for effect in effects(rows, ["a"], "y")], [1.0])
+
     def test_total_indices_hold_the_interactions(self):
         from glint.sweeps.sensitivity import sobol
         source, values = random.Random(5), []

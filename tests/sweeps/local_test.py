@@ -27,7 +27,8 @@ keys = { rt.warps = [2, 4, 8], core.warps = [4, 8] }
 
 class Points(SweepTest):
     def plan(self, **more):
-        from glint.sweeps.planning import Program, plan
+        from glint.sweeps.planning import plan
+        from glint.sweeps.program import Program
         return plan(self.sweeps.read({**TINY, **more}), Program(str(GLINT)))
 
     def refused(self, words, **more):
@@ -163,7 +164,8 @@ class Keeping(SweepTest):
 
     def test_variables_that_change_results_are_those_of_the_plan_and_name_points(self):
         from glint.sweeps.execution import Work
-        from glint.sweeps.planning import Program, plan
+        from glint.sweeps.planning import plan
+        from glint.sweeps.program import Program
         program, definition = self.stand_in('[ "$GLINT_ASSETS" = "%s" ] || exit 1' % self.folder), self.sweeps.read({**TINY, "retry": {"crash": 0}})
         bare = plan(definition, Program(str(program)))[0]["id"]
         os.environ["GLINT_ASSETS"] = str(self.folder)
@@ -180,7 +182,7 @@ class Keeping(SweepTest):
 
     def test_a_program_that_changed_meanwhile_runs_nothing(self):
         from glint.sweeps.execution import Work
-        from glint.sweeps.planning import Program
+        from glint.sweeps.program import Program
         program = self.stand_in()
         work = Work.of(self.sweeps.Store(self.folder / "store"), Program(str(program)), self.sweeps.read(TINY))
         work.check_program()

@@ -11,13 +11,14 @@ import shutil
 import sys
 from typing import Any, Callable, NoReturn
 
-from ..errors import CommandFailed, GlintError
+from ..errors import CommandFailed, GlintError, StoreFull
 from ..launch import find_glint
 from .cleaning import clean
 from .collecting import collect, write
 from .folder import SweepFolder
 from .page import objectives_of, page_of
-from .planning import Program, plan
+from .planning import plan
+from .program import Program
 from .running import DEFAULT_STORE, Engine, opened, read, run, status, text_of
 from .slurm import SlurmCluster
 from .store import Store, write_whole
@@ -49,7 +50,7 @@ def main(words: list[str] | None = None) -> int:
         return _ACTIONS[given.action](given)
     except GlintError as error:
         print(f"{'' if 'error: ' in str(error) else 'error: '}{error}", file=sys.stderr)
-        return 1 if isinstance(error, CommandFailed) and error.code not in (2, None) else 2
+        return 1 if isinstance(error, StoreFull) or (isinstance(error, CommandFailed) and error.code not in (2, None)) else 2
     except BrokenPipeError:
         return 1
     except OSError as error:
@@ -105,6 +106,7 @@ def _status(given: argparse.Namespace) -> int:
 
 def _cancel(given: argparse.Namespace) -> int:
     store, folder = opened(_sweep(given), given.store)
+    store.check_writable()
     count = folder.stop_all()
     if shutil.which("squeue") and any(folder.place.glob("runs/*/0-*.json")):
         SlurmCluster(folder.definition, folder, "").cancel()
@@ -143,7 +145,7 @@ def _collect(given: argparse.Namespace) -> int:
     print(f"{found.definition.name}: {len(found.rows)} points, {len(found.failures)} failed{missing}")
     print("\n".join(f" {path}" for path in files))
     if found.damaged:
-        print(f"warning: {len(found.damaged)} points have damaged files ({found.damaged[0]}): `glint sweep gc --yes` removes them, and `resume` runs them again", file=sys.stderr)
+        print(f"warning: points with damaged files: {len(found.damaged)}, such as {found.damaged[0]}: `glint sweep gc --yes` removes them, and `resume` runs them again", file=sys.stderr)
     return 0
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
-import datetime
+import errno
 import json
 import os
 import pathlib
@@ -12,22 +12,26 @@ import shutil
 import socket
 import subprocess
 import tempfile
+import time
 import zipfile
 import zlib
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 from ..derived import metrics
-from ..errors import GlintError, SweepError
+from ..errors import GlintError, StoreFull, SweepError
 from ..fingerprint import file_hash
 from ..run_directory import Run
-from .definition import Definition
-from .planning import VARIABLES, Program, stamp_of, words_of
 from .process import Ended, run_process, tail
+from .program import VARIABLES, Program, stamp_of, words_of
 from .store import SCHEMA, Store
+
+if TYPE_CHECKING:
+    from .definition import Definition  # which a task of a cluster does not read
 
 _REASONS = {2: "refused", 3: "unsupported", 4: "fault", 5: "stuck"}  # exit codes of docs/errors.md that no second attempt changes
 _PARTIAL = 6  # --max-cycles ended the launch, and what it did is whole
 _NO_MEMORY = ("out of memory", "bad_alloc", "Cannot allocate memory", "failed to map segment")  # of Glint, of C++, of the system and of its loader
+_NO_SPACE = tuple(os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT))  # which is no property of a point
 _SCRATCH = "glint-sweep-"
 
 
@@ -82,9 +86,13 @@ class Work:
             if ended.by == "stop" or stop():
                 return {"id": point["id"], "status": "stopped"}
             kind, message = _reason(ended, folder / "log.txt", self)
+            if kind and any(words in tail(folder / "log.txt") for words in _NO_SPACE):
+                raise StoreFull(f"no space is left for the files of a run: {message.replace('error: ', '')}\n  note: TMPDIR names another folder for them; what is done stays, and `glint sweep resume` goes on")
             if not kind:
                 try:
                     return self._keep(point, store, folder, ended, attempts)
+                except StoreFull:
+                    raise
                 except GlintError as error:
                     kind, message = "crash", f"the run left files that cannot be read: {error}"
             attempts.append({"kind": kind, "exit": ended.code, "message": message, "seconds": round(ended.seconds, 3), "peak_bytes": ended.peak_bytes})
@@ -96,8 +104,8 @@ class Work:
         return {"id": point["id"], "status": "failed", "kind": kind, "seconds": ended.seconds, "peak_bytes": ended.peak_bytes}
 
     def _words(self, point: dict[str, Any], out: str) -> list[str]:
-        shared = Definition("", [], **self.definition)
-        return [self.program, *words_of(point, shared), f"--threads={shared.threads}", f"--out={out}"]
+        shared = self.definition
+        return [self.program, *words_of(point, shared["oracles"], shared["stats"]), f"--threads={shared['threads']}", f"--out={out}"]
 
     def _launch(self, point: dict[str, Any], folder: pathlib.Path, stop: Callable[[], bool]) -> Ended:
         shutil.rmtree(folder / "run", ignore_errors=True)
@@ -158,7 +166,7 @@ def _packed(folder: pathlib.Path, path: pathlib.Path) -> pathlib.Path:
 
 
 def _now() -> str:
-    return datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
 
 
 def remove_left_scratch() -> None:

@@ -3,6 +3,7 @@
 """`SweepFolder(store, name)` is the folder `sweeps/NAME` of a store."""
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import os
@@ -17,6 +18,8 @@ from ..patterns import near
 from .definition import Definition
 from .store import Store, write_whole
 
+_COUNT = "points"
+_ANEW = "\n  note: `glint sweep run` of the sweep's file writes it again, and runs nothing that is done; remove the folder when the sweep is not needed any more"
 _FRESH = 15  # seconds that a note of progress counts, when its process cannot be asked
 
 
@@ -30,6 +33,12 @@ class SweepFolder:
         return sorted(path.name for path in (store.folder / "sweeps").iterdir() if (path / "sweep.json").is_file())
 
     @staticmethod
+    def all(store: Store) -> "list[SweepFolder]":
+        """Returns the folders of all sweeps that have named points, also of damaged ones."""
+        folders = [SweepFolder(store, path.name) for path in sorted((store.folder / "sweeps").iterdir())]
+        return [folder for folder in folders if any((folder.place / name).exists() for name in ("sweep.json", "points.jsonl"))]
+
+    @staticmethod
     def existing(store: Store, name: str) -> "SweepFolder":
         """Returns the folder of a sweep that has been planned. Raises SweepError with near names when there is none."""
         found = SweepFolder(store, name)
@@ -39,25 +48,27 @@ class SweepFolder:
         return found
 
     def save(self, definition: Definition, points: list[dict[str, Any]]) -> None:
-        """Keeps a plan, in the place of an earlier one."""
+        """Keeps a plan, in the place of an earlier one. The last line of its list says how many points there are, so that a list that was cut is known."""
         self.place.mkdir(parents=True, exist_ok=True)
-        write_whole(self.place / "points.jsonl", "".join(json.dumps(point) + "\n" for point in points))
+        write_whole(self.place / "points.jsonl", "".join(json.dumps(point) + "\n" for point in [*points, {_COUNT: len(points)}]))
         write_whole(self.place / "sweep.json", json.dumps({"schema": 1, "definition": dataclasses.asdict(definition)}, indent=1) + "\n")
 
     @property
     def definition(self) -> Definition:
-        tree = read_json(self.place / "sweep.json").get("definition")
         try:
-            return Definition(**tree)
-        except TypeError as error:
-            raise SchemaError(f"{self.place}/sweep.json: the file is damaged, or of another version of Glint: {error}") from error
+            return Definition(**read_json(self.place / "sweep.json")["definition"])
+        except (TypeError, KeyError, SchemaError) as error:
+            raise SchemaError(f"{self.place}/sweep.json: the file is damaged, or of another version of Glint: {error}{_ANEW}") from error
 
     @property
     def points(self) -> list[dict[str, Any]]:
         try:
-            return [json.loads(line) for line in read_text(self.place / "points.jsonl").splitlines()]
-        except json.JSONDecodeError as error:
-            raise SchemaError(f"{self.place}/points.jsonl: the file is damaged: {error}") from error
+            *points, last = [json.loads(line) for line in read_text(self.place / "points.jsonl").splitlines()]
+            if last[_COUNT] == len(points) == sum("id" in point for point in points):
+                return points
+        except (OSError, ValueError, KeyError, TypeError):
+            pass
+        raise SchemaError(f"{self.place}/points.jsonl: the list of points is missing, was cut short, or is damaged{_ANEW}")
 
     def new_run(self) -> pathlib.Path:
         """Returns a new folder for the tasks of one run. Its name tells the runs of all hosts apart."""
@@ -92,8 +103,9 @@ class SweepFolder:
         return len(self.runs())
 
     def note(self, run: pathlib.Path, progress: dict[str, Any]) -> None:
-        """Notes how far a run is, for `status` in another shell."""
-        write_whole(run / "progress.json", json.dumps({**progress, "host": socket.gethostname(), "pid": os.getpid(), "when": time.time()}) + "\n")
+        """Notes how far a run is, for `status` in another shell. A note that cannot be written is left out."""
+        with contextlib.suppress(OSError):
+            write_whole(run / "progress.json", json.dumps({**progress, "host": socket.gethostname(), "pid": os.getpid(), "when": time.time()}) + "\n")
 
     def progress(self) -> Iterable[dict[str, Any]]:
         """Returns the notes of runs that go on."""

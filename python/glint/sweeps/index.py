@@ -25,7 +25,7 @@ def records(store: Store, ids: Iterable[str]) -> dict[str, dict[str, Any]]:
             new = _read(store, [id for id in wanted if id not in found])
             index.executemany("insert or replace into points values (?, ?)", [(id, json.dumps(record)) for id, record in new.items()])
             index.commit()
-    except sqlite3.DatabaseError:  # damaged, locked for long, or the file system has no locks
+    except (sqlite3.DatabaseError, ValueError):  # damaged, locked for long, or the file system has no locks
         forget(store)
         found, new = {}, _read(store, wanted)
     both = {**found, **new}
@@ -34,8 +34,9 @@ def records(store: Store, ids: Iterable[str]) -> dict[str, dict[str, Any]]:
 
 def forget(store: Store) -> None:
     """Removes the index. It is made anew when it is next needed."""
-    with contextlib.suppress(OSError):
-        (store.folder / _FILE).unlink(missing_ok=True)
+    for end in ("-journal", ""):  # A journal that stayed alone would be played back into the next index.
+        with contextlib.suppress(OSError):
+            (store.folder / f"{_FILE}{end}").unlink(missing_ok=True)
 
 
 def _opened(store: Store) -> sqlite3.Connection:
@@ -64,5 +65,6 @@ def _read(store: Store, ids: list[str]) -> dict[str, dict[str, Any]]:
             record = store.read(id)
         except (OSError, GlintError):
             continue  # The point is not there, or damaged: nobody has its numbers.
-        found[id] = {key: record.get(key) for key in _KEPT}
+        if isinstance(record.get("metrics"), dict) and isinstance(record.get("cost"), dict) and isinstance(record["cost"].get("failed_attempts"), list):
+            found[id] = {key: record.get(key) for key in _KEPT}
     return found

@@ -9,44 +9,17 @@ import itertools
 import json
 import os
 import pathlib
-import subprocess
 from typing import Any, Iterable
 
-from ..errors import CommandFailed, SweepError
+from ..errors import SweepError
 from ..fingerprint import file_hash, files_of
 from .constraints import Constraint
 from .definition import Definition
+from .program import Program, ask
 
-VARIABLES = ("GLINT_ASSETS", "GLINT_PLUGINS")  # of the environment, that change what a run computes
 SCHEMA = 1  # of a point; another one gives other ids
 _SHOWN = 10  # points that a message names
 _SLICE = 500  # points that one process checks at a time
-
-
-class Program:
-    """Holds what all points of a sweep depend on: the program, its shaders and its plugins."""
-
-    def __init__(self, path: str):
-        self.path = path
-        self.hash = file_hash(path)
-        self.stamp = stamp_of(path)
-        self.facts = ask(self, [])[0]
-
-
-def stamp_of(path: str) -> list[int]:
-    """Returns size and time of a file, by which a changed program is noticed without reading it."""
-    about = os.stat(path)
-    return [about.st_size, about.st_mtime_ns]
-
-
-def ask(program: Program, points: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Returns what `glint describe --points` says: the facts of the program, then an answer for each point."""
-    text = "".join(json.dumps(point) + "\n" for point in points)
-    done = subprocess.run([program.path, "describe", "--points", "-"], input=text, capture_output=True, text=True, check=False)
-    lines = done.stdout.splitlines()
-    if done.returncode or len(lines) != len(points) + 1:
-        raise CommandFailed(f"{program.path} describe --points ended with exit code {done.returncode}: {done.stderr.strip()}", done.returncode, done.stderr)
-    return [json.loads(line) for line in lines]
 
 
 def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
@@ -70,13 +43,6 @@ def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
                 "weight": answer["weight"]}
         points.append(made)
     return points
-
-
-def words_of(point: dict[str, Any], definition: Definition) -> list[str]:
-    """Returns the words of a point's command line after `glint`, without the folder that it writes to."""
-    oracles = [f"--oracle={name}" for name in definition.oracles]
-    settings = [f"--set={key}={value}" for key, value in point["set"].items()]
-    return ["run", point["workload"], f"--config={point['config']}", *oracles, *settings, *point["options"], f"--stats={definition.stats}"]
 
 
 def _raw(definition: Definition, program: Program) -> list[dict[str, Any]]:

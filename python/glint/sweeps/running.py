@@ -20,8 +20,9 @@ from .definition import Definition
 from .execution import Work, remove_left_scratch
 from .executors import DaskCluster, ExecutorCluster
 from .folder import SweepFolder
-from .planning import Program, plan, title_of
+from .planning import plan, title_of
 from .pool import LocalPool
+from .program import Program
 from .progress import Progress
 from .slurm import SlurmCluster
 from .store import Store
@@ -80,14 +81,17 @@ def run(sweep: str | pathlib.Path | Mapping[str, Any] | Definition, store: str |
 
     Raises:
         SweepError: Something is wrong with the sweep or with one of its points. Nothing was run.
+        StoreFull: No space is left for points. What is done stays.
     """
     definition, engine = read(sweep), engine or Engine()
     program = Program(find_glint(glint))
     points = plan(definition, program)
     kept_in = Store(store or definition.store or DEFAULT_STORE)
     try:
+        kept_in.check_writable()
         folder = SweepFolder(kept_in, definition.name)
-        folder.save(definition, points)
+        with kept_in.plans_kept_still():
+            folder.save(definition, points)
         stopped = _run_rest(definition, engine, program, kept_in, folder, points, failed, progress)
         return dataclasses.replace(_status(kept_in, folder, points), stopped=stopped)
     finally:
@@ -118,7 +122,10 @@ def _run_rest(definition: Definition, engine: Engine, program: Program, store: S
     different = {point["id"]: point for point in points}
     left = {id: point for id, point in different.items() if not store.has(id)}
     kept = len(different) - len(left)
-    known_failures = store.failed() & set(left)
+    recorded = store.failed() & set(left)
+    known_failures = {id for id in recorded if store.read_failure(id)}
+    for id in recorded - known_failures:
+        store.forget_failure(id)  # Its record is damaged.
     if failed:
         for id in known_failures:
             store.forget_failure(id)

@@ -9,6 +9,7 @@ import statistics
 from typing import Any, Sequence
 
 _BINS = 10  # of a key with many values
+_IN_A_BIN = 3  # rows at least, without which the scatter within it says nothing
 _FEWEST = 20  # points below which a first-order index is not estimated
 _RESAMPLES = (20, 100)  # at least, at most
 _DRAWN = 300_000  # rows that all resamples of a key may draw
@@ -40,7 +41,7 @@ def effects(rows: Sequence[dict[str, Any]], keys: Sequence[str], result: str) ->
     rows = [row for row in rows if isinstance(row.get(result), (int, float))]
     out = []
     for key in keys:
-        groups = _groups(rows, key)
+        groups = _groups(rows, key, alone=len(keys) == 1)
         if len(groups) < 2:
             continue
         values = [[row[result] for row in group] for _, group in groups]
@@ -83,18 +84,22 @@ def pareto(rows: Sequence[dict[str, Any]], objectives: Sequence[tuple[str, bool]
     return sorted(i for i, _ in front)
 
 
-def _groups(rows: Sequence[dict[str, Any]], key: str) -> list[tuple[str, list[dict[str, Any]]]]:
-    """Returns rows by value of a key, or by ranges with as many rows each when the values are many numbers."""
+def _groups(rows: Sequence[dict[str, Any]], key: str, alone: bool) -> list[tuple[str, list[dict[str, Any]]]]:
+    """Returns rows by value of a key, or by ranges with as many rows each when the values are many numbers. Numbers that hardly come twice are many, too, unless
+    no other key differs: between groups of one row lies all variance, whatever made it.
+    """
     rows = [row for row in rows if row.get(key) is not None]
     different = {row[key] for row in rows}
     is_number = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in different)
     ordered = sorted(rows, key=lambda row: row[key] if is_number else str(row[key]))
-    if len(different) <= 2 * _BINS or not is_number:
+    come_twice = alone or 2 * len(different) <= len(rows)
+    if (len(different) <= 2 * _BINS and come_twice) or not is_number:
         out: dict[Any, list[dict[str, Any]]] = {}
         for row in ordered:
             out.setdefault(row[key], []).append(row)
         return [(str(value), group) for value, group in out.items()]
-    parts = [ordered[len(ordered) * i // _BINS:len(ordered) * (i + 1) // _BINS] for i in range(_BINS)]
+    count = max(2, min(_BINS, len(ordered) // _IN_A_BIN))
+    parts = [ordered[len(ordered) * i // count:len(ordered) * (i + 1) // count] for i in range(count)]
     return [(f"{part[0][key]:g} .. {part[-1][key]:g}", part) for part in parts if part]
 
 
