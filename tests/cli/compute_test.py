@@ -40,11 +40,22 @@ class Compute(GlintTest):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual([row["workload"] for row in self.rows("both/metrics.csv")][0], "WKND_SH")
 
+    def test_options_that_all_workloads_of_a_sweep_get_are_no_errors_where_nothing_reads_them(self):
+        done = self.glint("run", "bfs", "--small", "--size", "8x8", "--seed", "3", "--launch", "x.toml", "--out", "run")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        warnings = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
+        self.assertEqual(warnings, ["warning: --launch changes nothing, because only a kernel (.ptx) has a launch file", "warning: --size changes nothing, because only scenes read it",
+                                    "warning: --seed changes nothing, because only scenes read it"])
+        self.assertNotIn("changes nothing", self.glint("run", "WKND_SH", "--size", "2x2", "--spp", "1", "--out", "scene").stderr)
+
     def test_options_that_mean_nothing_are_refused(self):
         self.expect(2, ["--small belongs to compute programs, and 'WKND' is none"], "run", "WKND", "--small")
         self.expect(2, ["--fov belongs to scenes, and 'bfs' is none", "--small"], "run", "bfs", "--fov", "40")
         self.expect(2, ["--profile, --sample, --heat and --trace cannot be used"], "run", "bfs", "--profile")
         self.expect(2, ["-I and -D cannot be used"], "run", "bfs", "-D", "N=1")
+        for file in ("a.capsule", "a.ptx", "a.amber"):
+            self.expect(2, [f"-I and -D cannot be used with '{file}'"], "run", file, "-I", "parts")
+        self.expect(2, ["--json cannot be used with Amber scripts"], "run", "a.amber", "--json")
         self.expect(2, ["the bench has none"], "bench", "WKND_SH", "--small")
         self.expect(2, ["the bench has none"], "bench", "compute", "--fov", "40")
         self.expect(2, ["did you mean 'bfs'?"], "bench", "bfss")

@@ -53,6 +53,27 @@ class Frames(VulkanTest):
         self.assertEqual(first["least_ns"], first["most_ns"])
         self.assertGreater(int(first["median_ns"]), 1000)
 
+    def test_a_capsule_of_a_frame_is_sampled_as_the_frame_is(self):
+        frame, sample = ["SHIP_SH", "--size", "128x128", "--spp", "1"], ["--sample-pixels", "40%", "--set", "core.warps=8", "--stats", "compact"]
+        self.glint("export", *frame, "--out", "frame")
+        self.draw("frame", "--runs", 1, "--warm-up", 0, GLINT_VK_SAVE="trace 0", GLINT_OUT="app")
+        capsule = next((self.folder / "app").glob("*.capsule"))
+        self.glint("run", capsule, "--set", "core.warps=8", "--stats", "compact", "--out", "whole")
+        self.glint("run", capsule, *sample, "--out", "sampled")
+        self.glint("run", *frame, *sample, "--out", "scene")
+        whole, sampled, scene = (self.statistics(folder) for folder in ("whole", "sampled", "scene"))
+        self.assertLess(sampled["gpu.sample.cycles_low"], whole["gpu.cycles"])
+        self.assertGreater(sampled["gpu.sample.cycles_high"], whole["gpu.cycles"])
+        for name in ("instructions", "nodes"):  # The same blocks ran. Only addresses differ, and times with them.
+            self.assertEqual(sampled[f"gpu.sample.{name}"], scene[f"gpu.sample.{name}"])
+        run = json.loads((self.folder / "sampled/run.json").read_text())
+        self.assertTrue(run["outputs"])
+        self.assertEqual({about["incomplete"] for about in run["outputs"].values()}, {True})
+
+    def statistics(self, folder):
+        with open(self.folder / folder / "stats.csv") as file:
+            return {row["path"]: float(row["value"]) for row in csv.DictReader(file)}
+
     def test_probes_on_the_driver_give_the_rows_of_glint_microbench(self):
         machine = ["--config", "mobile", "--set", "cores=1"]
         self.glint("microbench", *machine, "--frames", "probes")

@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/glint/options/command_line.h"
 #include "apps/glint/options/config.h"
@@ -18,14 +20,17 @@
 namespace glint::app {
 namespace {
 
+constexpr const char* kLaunchOption = "--launch";
+
 struct RunOptions {
   SceneOptions scene;
   LaunchOptions launch;
-  std::string kernel_launch;      // launch file of a kernel
-  std::vector<std::string> more;  // Amber scripts after the first
-  ScriptOptions script;           // for Amber scripts
-  std::string caches;             // "cold", "warm", or empty: the default of what runs
-  bool small = false;             // for compute programs
+  std::string kernel_launch;             // launch file of a kernel
+  std::vector<std::string> more;         // Amber scripts after the first
+  ScriptOptions script;                  // for Amber scripts
+  std::string caches;                    // "cold", "warm", or empty: the default of what runs
+  bool small = false;                    // for compute programs
+  std::vector<std::string> of_one_kind;  // options that were given and that one kind of input reads
 };
 
 bool is_scene(const std::string& what) {
@@ -42,6 +47,39 @@ void check_scene_options(const RunOptions& options) {
                   : names_capsule(what) ? "a capsule has all that its launch needs"
                   : names_program(what) ? "its input is the full one, or the small one with --small"
                                         : "what a pipeline, a kernel or a script renders stands in its file");
+}
+
+// Refuses options that nothing of what runs would read.
+void check_unread_options(const RunOptions& options) {
+  const std::string& what = options.scene.scene;
+  const ShaderOptions& shaders = options.launch.shaders;
+  const bool compiles = is_scene(what) || names_pipeline(what) || names_program(what);
+  if (!compiles && !(shaders.include_dirs.empty() && shaders.defines.empty()))
+    throw UserError({}, fmt::format("-I and -D cannot be used with '{}'", what),
+                    "they are for the shaders of scenes and pipelines, and for files of shaders");
+  if (names_script(what) && options.launch.json)
+    throw UserError({}, "--json cannot be used with Amber scripts",
+                    "with --out, each launch has a folder with its statistics");
+}
+
+// Returns those options that were given and that one kind of input reads alone.
+std::vector<std::string> given_of_one_kind(const Command& command) {
+  std::vector<std::string> out = {kLaunchOption, "--size", "--shader", "--shader-dir", "--instancing"};
+  for (const scenes::RenderParam& p : scenes::RenderParams::params())
+    if (!p.option.empty()) out.emplace_back(p.option);
+  std::erase_if(out, [&](const std::string& option) { return !command.count(option); });
+  return out;
+}
+
+// Says which options change nothing. They are no errors, because all workloads of a sweep get the same ones.
+void warn_of_unread_options(const RunOptions& options) {
+  const std::string& what = options.scene.scene;
+  for (const std::string& option : options.of_one_kind)
+    if (option == kLaunchOption && !what.ends_with(".ptx"))
+      fmt::print(stderr, "warning: {} changes nothing, because only a kernel (.ptx) has a launch file\n",
+                 option);
+    else if (option != kLaunchOption && !is_scene(what))
+      fmt::print(stderr, "warning: {} changes nothing, because only scenes read it\n", option);
 }
 
 // Refuses to sample the blocks of what has more launches than one, and the launches of what does not launch
@@ -63,6 +101,7 @@ void check_sampled(const RunOptions& options) {
 void check(const RunOptions& options) {
   const std::string& what = options.scene.scene;
   check_scene_options(options);
+  check_unread_options(options);
   check_sampled(options);
   if (options.small && !names_program(what))
     throw UserError({}, fmt::format("--small belongs to compute programs, and '{}' is none", what),
@@ -72,6 +111,7 @@ void check(const RunOptions& options) {
 Exit run(const Session& session, const RunOptions& options) {
   const std::string& what = options.scene.scene;
   check(options);
+  warn_of_unread_options(options);
   if (names_script(what)) {
     if (options.launch.max_cycles)
       throw UserError({}, "--max-cycles cannot be used with Amber scripts",
@@ -107,7 +147,7 @@ void add_scene_options(Command command, RunOptions& options) {
       .required();
   command.add_option("MORE", options.more, "More Amber scripts to run after the first one");
   command
-      .add_option("--launch", options.kernel_launch,
+      .add_option(kLaunchOption, options.kernel_launch,
                   "Launch file of a kernel, which gives grid, block and arguments")
       .type_name("FILE");
   command
@@ -154,6 +194,7 @@ void add_run(Command app, Session& session) {
     finish_launch_options(command, options->launch);
     options->scene.shader_given = command.count("--shader") > 0;
     options->scene.sequence.caches = options->caches;
+    options->of_one_kind = given_of_one_kind(command);
     if (!options->caches.empty()) options->script.caches = options->caches;
     session.check = [options] { check(*options); };
     session.action = [&session, options] { return run(session, *options); };
