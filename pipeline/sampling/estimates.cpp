@@ -19,6 +19,8 @@ constexpr MethodError kError{.cycles = 0.03, .l1 = 0.01, .l2 = 0.03, .utilisatio
 // bench/sampled_launches.py.
 constexpr MethodError kErrorOfOwnLines{.cycles = 0.06, .l1 = 0.05, .l2 = 0.07, .utilisation = 0.05};
 
+constexpr double kLargestVariance = 0.25;  // of whether a read hits
+
 // Returns the quotient of two counts over the batches, and its variance by the scatter of the batches around
 // it.
 Uncertain quotient(const SampleCounts& counts, BatchCount above, BatchCount below) {
@@ -59,12 +61,14 @@ double missing_write_clocks(const SampleCounts& counts, BatchCount measure, doub
   const DramTraffic &end = counts.traffic, &begin = counts.traffic_of_half;
   const double timed = at(counts.total, measure), later = timed - at(counts.half, measure),
                requests = end.reads + end.writes;
-  if (requests <= 0 || later <= 0) return 0;
+  // A sample may have left all of its writes to be done.
+  const double clocks = requests > 0 ? at(counts.total, BatchCount::DramBusy) / requests : end.clocks;
+  if (!(clocks > 0) || later <= 0) return 0;
   const double written = work / later * (end.writes + end.unwritten - begin.writes - begin.unwritten),
                read = work / later * (end.reads - begin.reads);
   if (written <= 0) return 0;
   const double held = written * std::min(1.0, end.l2 / (written + read));
-  return ((written - held) * timed / work - end.writes) * at(counts.total, BatchCount::DramBusy) / requests;
+  return ((written - held) * timed / work - end.writes) * clocks;
 }
 
 }  // namespace
@@ -73,6 +77,7 @@ std::vector<Estimate> estimate(const SampleCounts& counts) {
   const double scale = counts.plan->scale;
   const bool has_rays = at(counts.total, BatchCount::Nodes) > 0;
   const BatchCount measure = has_rays ? BatchCount::Nodes : BatchCount::Instructions;
+  const MethodError& own = counts.writes_are_missing ? kError : kErrorOfOwnLines;
   RunSums sums;
   sums.instructions = sum_over_strata(counts, BatchCount::Instructions, &BlockWork::instructions);
   if (has_rays) sums.nodes = sum_over_strata(counts, BatchCount::Nodes, &BlockWork::nodes);
@@ -87,10 +92,14 @@ std::vector<Estimate> estimate(const SampleCounts& counts) {
     double y = at(counts.total, above);
     if (which == Quantity::DramUtilisation && counts.writes_are_missing)
       y += missing_write_clocks(counts, measure, work.value);
-    if (x > 0) sums.fractions[i] = {std::clamp(y / x, 0.0, 1.0), quotient(counts, above, below).variance};
+    // A few reads may all hit, and say nothing of the launch's first ones, which miss. DRAM's clocks are
+    // many.
+    const bool says_enough =
+        which == Quantity::DramUtilisation || x * own.*error * own.*error >= kLargestVariance;
+    if (x > 0 && says_enough)
+      sums.fractions[i] = {std::clamp(y / x, 0.0, 1.0), quotient(counts, above, below).variance};
   }
-  return make_estimates(sums, student_quantile(uint32_t(counts.batches.size()) - 1),
-                        counts.writes_are_missing ? kError : kErrorOfOwnLines);
+  return make_estimates(sums, student_quantile(uint32_t(counts.batches.size()) - 1), own);
 }
 
 }  // namespace glint::pipeline

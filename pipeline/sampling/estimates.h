@@ -27,6 +27,7 @@ struct DramTraffic {
   double reads = 0, writes = 0;
   double unwritten = 0;  // writes that would still have to follow: of sectors that the L2 holds or has lost
   double l2 = 0;         // as many requests have the L2's bytes
+  double clocks = 0;     // DRAM clocks in which data of one request move, by the configuration
 };
 
 struct SampleCounts {
@@ -46,11 +47,12 @@ struct SampleCounts {
 // Cycles are those of the sample and, for the work that it lacks, the batches' cycles for each node visited,
 // or for each instruction in a launch without rays (a ratio estimator). The start and the end of a launch,
 // when the machine is not full, are so counted once. The work of the launch is summed over strata. Other
-// estimates are quotients of the sample's counts. The use of DRAM also has the writes that the sample has
-// left to be done: a whole launch writes back all that it makes dirty, but for what the L2 still holds at its
-// end, which is its part of all that went through the L2. An interval has two parts: the scatter of the
-// batches, with Student's quantile for their number, and the method's own error (docs/sampling.md), since a
-// sample's caches and order are not those of the whole launch.
+// estimates are quotients of the sample's counts. A hit rate is left out where the sample has so few reads
+// that chance alone could be a larger error than the method's. The use of DRAM also has the writes that the
+// sample has left to be done: a whole launch writes back all that it makes dirty, but for what the L2 still
+// holds at its end, which is its part of all that went through the L2. An interval has two parts: the scatter
+// of the batches, with Student's quantile for their number, and the method's own error (docs/sampling.md),
+// since a sample's caches and order are not those of the whole launch.
 std::vector<Estimate> estimate(const SampleCounts& counts);
 
 }  // namespace glint::pipeline

@@ -26,6 +26,8 @@ DramTraffic traffic_of(const TimingMachine& machine, uint64_t unwritten_sectors)
   const mem::Params& params = machine.params().memory;
   const double atom = std::max(params.dram.atom_bytes(), mem::kSectorBytes);
   DramTraffic out;
+  out.clocks = double(params.dram.burst) / params.dram.transfers_per_clock *
+               std::max(1.0, double(mem::kSectorBytes) / params.dram.atom_bytes());
   out.unwritten = double(unwritten_sectors) * mem::kSectorBytes / atom;
   for (uint32_t i = 0; i < machine.memory().num_partitions(); ++i) {
     const mem::Partition& partition = machine.memory().partition(i);

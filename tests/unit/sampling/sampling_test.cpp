@@ -26,8 +26,8 @@ SampleCounts counts_of(const SamplePlan& plan, const std::vector<double>& cycles
     SampleBatch batch;
     batch.counts[size_t(BatchCount::Cycles)] = cycles;
     batch.counts[size_t(BatchCount::Nodes)] = 100;
-    batch.counts[size_t(BatchCount::L1Reads)] = 50;
-    batch.counts[size_t(BatchCount::L1Hits)] = 25;
+    batch.counts[size_t(BatchCount::L1Reads)] = 5000;
+    batch.counts[size_t(BatchCount::L1Hits)] = 2500;
     for (size_t i = 0; i < batch.counts.size(); ++i) counts.total[i] += batch.counts[i];
     counts.batches.push_back(batch);
   }
@@ -188,6 +188,9 @@ TEST_CASE("The use of DRAM has the writes that a sample leaves to be done", "[sa
   CHECK(utilisation({.reads = 25, .writes = 0, .unwritten = 50, .l2 = 600}) == Approx(0.1));
   // Of 400 writes and 200 reads an L2 of 60 holds a tenth: of each 100 writes 90 follow, with 4 clocks each.
   CHECK(utilisation({.reads = 25, .writes = 0, .unwritten = 50, .l2 = 60}) == Approx(0.1 + 0.36));
+  // Nothing has been asked of DRAM yet. An L2 of 40 holds a tenth of 400 writes, and the configuration says
+  // that each takes 2 clocks.
+  CHECK(utilisation({.reads = 0, .writes = 0, .unwritten = 50, .l2 = 40, .clocks = 2}) == Approx(0.1 + 0.18));
 }
 
 TEST_CASE("An interval grows with the scatter of the batches and with that of the work", "[sampling]") {
@@ -202,6 +205,21 @@ TEST_CASE("An interval grows with the scatter of the batches and with that of th
   const double even = width({1000, 1000, 1000}, 30, 30);
   CHECK(width({900, 1000, 1100}, 30, 30) > 1.2 * even);
   CHECK(width({1000, 1000, 1000}, 20, 40) > 1.2 * even);
+}
+
+TEST_CASE("A hit rate of a few reads is not estimated", "[sampling]") {
+  SamplePlan plan;
+  plan.num_blocks = 40, plan.scale = 2, plan.sizes = {0, 0, 30};
+  const auto is_estimated = [&](double reads) {
+    SampleCounts counts = counts_of(plan, {1000, 1000, 1000});
+    counts.work[size_t(Stratum::Rest)] = {{0, 30}, {0, 30}};
+    counts.total[size_t(BatchCount::L2Reads)] = counts.total[size_t(BatchCount::L2Hits)] = reads;
+    return std::ranges::any_of(estimate(counts),
+                               [](const Estimate& one) { return one.name == "l2_hit_rate"; });
+  };
+  // The method's own error is 0.03, and 0.5 / sqrt(278) is as much.
+  CHECK(!is_estimated(270));
+  CHECK(is_estimated(280));
 }
 
 TEST_CASE("Student's quantiles are those of the tables", "[sampling]") {
