@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -150,7 +151,7 @@ struct L2Params {
   bool fill_takes_service = true;  // Choice: arrays have one port; vendors do not publish it
 
   static ParamList params() {
-    return {
+    ParamList rows = {
         param(&L2Params::slices, "slices", "slice",
               "Number of L2 slices in a partition. Each slice has its own ports, and all share the DRAM "
               "channel.",
@@ -178,7 +179,15 @@ struct L2Params {
         param(&L2Params::dram_queue, "dram_queue", "request",
               "Largest number of reads and writes of sectors that wait between the slice and the DRAM "
               "scheduler.",
-              0, 1 << 16),
+              0, 1 << 16)};
+    for (ParamRow& row : service_params()) rows.push_back(std::move(row));
+    return rows;
+  }
+
+ private:
+  // Returns the parameters of what atomics, writes and fills take of a slice's time.
+  static ParamList service_params() {
+    return {
         param(&L2Params::atomic_interval, "atomic_interval", "cycle",
               "Slice cycles per sector of an atomic, or per turn at the sector where lanes take turns, in "
               "steps of 1/16.",
