@@ -159,12 +159,12 @@ class Bench(BenchTest):
         self.assertIn(f"rt_writes = {hits}\n", self.glint(0, "stats", "run", "--format", "vulkan-sim").stdout)
 
     def test_report_and_model_take_the_runs_of_metrics_csv_and_name_the_others(self):
-        self.glint(0, "bench", "REF_SH", "REF_AO", *SMALL, "--out", "b")
+        self.glint(0, "bench", "BUNNY_SH", "BUNNY_AO", *SMALL, "--out", "b")
         for other in ("WKND_SH", "SHIP_SH"):
             self.glint(0, "run", other, *SMALL, "--out", f"b/{other}")
         model = self.glint(0, "model", "b", "--statistics-only")
         with open(self.folder / "b/models.csv", newline="") as file:
-            self.assertEqual([row["workload"] for row in csv.DictReader(file)], ["REF_AO", "REF_SH"])
+            self.assertEqual([row["workload"] for row in csv.DictReader(file)], ["BUNNY_AO", "BUNNY_SH"])
         report = self.glint(0, "report", "b", "-o", "page.html")
         for done in (model, report):
             self.assertRegex(done.stderr, "left out.*: SHIP_SH WKND_SH\n")

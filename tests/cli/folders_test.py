@@ -147,14 +147,14 @@ class BenchFolders(Folders):
     def test_rows_of_other_workloads_stay_in_the_table(self):
         self.bench("WKND_SH", "SHIP_SH")
         before = self.rows()
-        self.ok("bench", "REF_SH", "SHIP_SH", "--size", "16x16", "--spp", "1", "--out", "b")
+        self.ok("bench", "BUNNY_SH", "SHIP_SH", "--size", "16x16", "--spp", "1", "--out", "b")
         after = self.rows()
         order = [line.split()[0] for line in self.ok("list", "workloads").stdout.splitlines()]
-        self.assertEqual(list(after), sorted(("WKND_SH", "REF_SH", "SHIP_SH"), key=order.index))
+        self.assertEqual(list(after), sorted(("WKND_SH", "BUNNY_SH", "SHIP_SH"), key=order.index))
         self.assertEqual(after["WKND_SH"], before["WKND_SH"])
         self.assertNotEqual(after["SHIP_SH"], before["SHIP_SH"])
         self.assertEqual(self.glint("model", "b", "--statistics-only").stderr, "")
-        self.ok("bench", "REF_SH", "--size", "16x16", "--spp", "1", "--out", "b", "--resume")
+        self.ok("bench", "BUNNY_SH", "--size", "16x16", "--spp", "1", "--out", "b", "--resume")
         self.assertEqual(self.rows(), after)
 
     def test_a_table_with_other_columns_is_not_cut(self):

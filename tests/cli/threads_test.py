@@ -83,7 +83,7 @@ class Threads(GlintTest):
         self.assertGreater(json.loads((self.folder / "t8/stats.json").read_text())["gpu"]["core[3]"]["global_atomics"]["value"], 0)
 
     def test_the_functional_machine_has_the_picture_and_counts_of_one_thread(self):
-        for scene in ("WKND_PT", "REF_PT", "BUNNY_AO", "SHIP_SH"):
+        for scene in ("WKND_PT", "BATH_PT", "BUNNY_AO", "SHIP_SH"):
             self.same_files([scene, "--mode", "functional", "--size", "64x48", "--spp", "1"], ["image.pfm", "stats.csv"])
 
     def test_blocks_that_read_what_others_write_give_what_they_give_in_order(self):

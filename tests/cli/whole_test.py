@@ -107,7 +107,7 @@ class Runs(Whole):
 class Benches(Whole):
     def setUp(self):
         super().setUp()
-        self.ok("bench", "WKND_SH", "SHIP_SH", "REF_SH", *TINY, "--out", "ok")
+        self.ok("bench", "WKND_SH", "SHIP_SH", "BUNNY_SH", *TINY, "--out", "ok")
 
     def test_a_table_that_was_cut_is_refused_and_a_resumed_bench_makes_it_again(self):
         whole = (self.folder / "ok/metrics.csv").read_bytes()
@@ -117,7 +117,7 @@ class Benches(Whole):
             with self.subTest(reader=reader):
                 self.expect(2, ["d/metrics.csv: error: ", "bench.json says", "it was cut short", "remove metrics.csv and run the bench again with --resume"], *reader)
         (self.folder / "d/metrics.csv").unlink()
-        done = self.ok("bench", "WKND_SH", "SHIP_SH", "REF_SH", *TINY, "--out", "d", "--resume")
+        done = self.ok("bench", "WKND_SH", "SHIP_SH", "BUNNY_SH", *TINY, "--out", "d", "--resume")
         self.assertIn("3 of them complete", done.stdout)
         self.assertEqual((self.folder / "d/metrics.csv").read_bytes(), whole)
 
@@ -125,7 +125,7 @@ class Benches(Whole):
         whole = (self.folder / "ok/SHIP_SH/stats.csv").read_bytes()
         self.damaged("SHIP_SH/stats.csv", cut)
         self.expect(2, ["d/SHIP_SH/stats.csv", "it was cut short"], "report", "d")
-        done = self.ok("bench", "WKND_SH", "SHIP_SH", "REF_SH", *TINY, "--out", "d", "--resume")
+        done = self.ok("bench", "WKND_SH", "SHIP_SH", "BUNNY_SH", *TINY, "--out", "d", "--resume")
         self.assertIn("2 of them complete", done.stdout)
         self.assertEqual((self.folder / "d/SHIP_SH/stats.csv").read_bytes(), whole)
 
