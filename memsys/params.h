@@ -137,9 +137,10 @@ struct L2Params {
   uint32_t sectors_per_cycle = 2;                // measured on H100: two sectors per clock and slice
   uint32_t mshr_entries = 192;                   // Vulkan-Sim: A:192:4
   uint32_t mshr_merges = 4;
-  uint32_t dram_queue = 64;  // Vulkan-Sim: dram_partition_queues
-  // Choice: vendors do not publish it. An H200 takes 2 cycles, and 1/8 cycle per lane (docs/validation.md).
-  double read_interval = 0, read_visit = 0;
+  uint32_t dram_queue = 64;                  // Vulkan-Sim: dram_partition_queues
+  double read_interval = 0, read_visit = 0;  // H200: 0.625 and 1.125 (docs/validation.md)
+  // Choice: vendors do not publish the interval. An H200 takes 1.46 cycles, and 0.3 for another line
+  // (docs/validation.md).
   double atomic_interval = 2, atomic_visit = 0;
   double atomic_whole_interval = 0, atomic_float_interval = 0, atomic_lane_interval = 0,
          atomic_answer_interval = 0;
@@ -245,8 +246,7 @@ struct Params {
         choice(&Params::hash, "hash",
                "Selects how chunks of `interleave` bytes spread over the L2 slices: a hash rotates the order "
                "of the slices in each round, units of 64 chunks take 32 slices of a half each as on GPUs "
-               "with 80 "
-               "and 96 slices, or every round has the same order.",
+               "with 80 and 96 slices, or every round has the same order.",
                &partition_hashes),
         section(&Params::l1, "l1", "Parameters of the data cache of each core (L1)."),
         section(&Params::noc, "noc", "Parameters of the network between cores and L2 slices."),

@@ -51,14 +51,14 @@ class SliceClasses {
 
   uint32_t slice(uint64_t chunk) const {
     const uint64_t unit = chunk >> kUnitBits, bits = mixed_bits(unit);
-    const auto block = uint32_t(((chunk >> 2) ^ (bits >> 40)) & 15);
+    const uint32_t block = block_of(chunk, bits);
     const auto side = uint32_t((chunk ^ (bits >> 48)) & 1);
     return half_of(unit) * half_ + class_of(unit, block) * 8 + (block & 3) * 2 + side;
   }
   // Returns the number of the chunk among those of its slice.
   uint64_t rank(uint64_t chunk) const {
     const uint64_t unit = chunk >> kUnitBits, pair = unit >> 1;
-    const auto block = uint32_t(((chunk >> 2) ^ (mixed_bits(unit) >> 40)) & 15);
+    const uint32_t block = block_of(chunk, mixed_bits(unit));
     const uint64_t units = pair / period_ * share_ + ranks_[pair % period_][class_of(unit, block)];
     return units * 2 + (chunk >> 1 & 1);
   }
@@ -69,6 +69,10 @@ class SliceClasses {
   static constexpr uint32_t kUnitBits = 6;
   // The halves change places every 16 units, as measured.
   static uint32_t half_of(uint64_t unit) { return uint32_t((unit ^ (unit >> 4)) & 1); }
+  // Returns the place of the chunk's block in its unit, of whose number `bits` are the mixed bits.
+  static uint32_t block_of(uint64_t chunk, uint64_t bits) {
+    return uint32_t(((chunk >> 2) ^ (bits >> 40)) & 15);
+  }
   uint32_t class_of(uint64_t unit, uint32_t block) const { return taken_[(unit >> 1) % period_][block >> 2]; }
 
   uint32_t half_, classes_;

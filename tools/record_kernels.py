@@ -41,22 +41,26 @@ def launch_all(folder):
             cupy.cuda.Device().synchronize()
 
 
+def profile(kernels, metrics, program, *options):
+    """Runs a program under Nsight Compute. Returns a row for each launch of one of the kernels."""
+    command = ["ncu", "--clock-control", "none", *options, "--csv", "--page", "raw", "--print-units", "base", "--metrics", ",".join(metrics),
+               "-k", f"regex:^({'|'.join(kernels)})$", *program]
+    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    rows = list(csv.DictReader(io.StringIO("\n".join(line for line in output.splitlines() if line.startswith('"')))))[1:]  # the first row has units
+    return [(row["Kernel Name"], [row[metric].replace(",", "") for metric in metrics]) for row in rows]
+
+
 def record(folder, arch):
     subprocess.run(["nvcc", f"-arch={arch}", "-O3", "-ptx", "-o", folder / "kernels.ptx", folder / "kernels.cu"], check=True)
     subprocess.run(["nvcc", f"-arch={arch}", "-cubin", "-o", folder / "kernels.cubin", folder / "kernels.ptx"], check=True)
-    names = "|".join(tomllib.loads((folder / "launches.toml").read_text()))
-    command = ["ncu", "--clock-control", "none", "--csv", "--page", "raw", "--print-units", "base", "--metrics", ",".join(METRICS),
-               "-k", f"regex:^({names})$", sys.executable, __file__, folder, "--launch"]
-    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    rows = list(csv.DictReader(io.StringIO("\n".join(line for line in output.splitlines() if line.startswith('"')))))[1:]
+    rows = profile(tomllib.loads((folder / "launches.toml").read_text()), METRICS, [sys.executable, __file__, folder, "--launch"])
     turns = {}
     with open(folder / "counters.csv", "w") as out:
         table = csv.writer(out, lineterminator="\n")
         table.writerow(["kernel", "launch"] + METRICS)
-        for row in rows:
-            name = row["Kernel Name"]
+        for name, values in rows:
             turns[name] = turns.get(name, 0) + 1
-            table.writerow([name, turns[name]] + [row[metric].replace(",", "") for metric in METRICS])
+            table.writerow([name, turns[name]] + values)
     (folder / "kernels.cubin").unlink()
 
 

@@ -9,13 +9,14 @@ Glint. Programs whose kernels are in PTX: backprop, bfs, gaussian, hotspot, nn a
 # SPDX-License-Identifier: Apache-2.0
 import argparse
 import csv
-import io
 import math
 import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from record_kernels import profile
 
 ROOT = Path(__file__).resolve().parent.parent
 KERNELS = ROOT / "shaders" / "compute"
@@ -151,13 +152,10 @@ def pathfinder(d):
 
 def record():
     rows = []
-    names = "|".join(path.stem for path in sorted(KERNELS.glob("*.ptx")))
+    names = [path.stem for path in sorted(KERNELS.glob("*.ptx"))]
     for program in PROGRAMS:
-        command = ["ncu", "--clock-control", "none", "--cache-control", "none", "--csv", "--page", "raw", "--print-units", "base", "--metrics",
-                   ",".join(METRICS), "-k", f"regex:^({names})$", sys.executable, __file__, "--launch", program]
-        output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-        found = list(csv.DictReader(io.StringIO("\n".join(line for line in output.splitlines() if line.startswith('"')))))[1:]
-        rows += [[program, i, row["Kernel Name"]] + [row[metric].replace(",", "") for metric in METRICS] for i, row in enumerate(found)]
+        found = profile(names, METRICS, [sys.executable, __file__, "--launch", program], "--cache-control", "none")
+        rows += [[program, i, kernel] + values for i, (kernel, values) in enumerate(found)]
     COUNTERS.parent.mkdir(exist_ok=True)
     with open(COUNTERS, "w") as out:
         csv.writer(out, lineterminator="\n").writerows([["program", "launch", "kernel"] + METRICS] + rows)
