@@ -32,7 +32,7 @@ uint32_t latency_of(const VirtualInst& inst, bool is_assembler) {
   constexpr std::string_view kNames[] = {"rcp.approx.f32", "rsqrt.approx.f32", "sqrt.approx.f32",
                                          "lg2.approx.f32"};
   const isa::OpRow& row = row_of(inst);
-  if (is_assembler && row.unit == isa::Unit::Lsu && row.memory.space == isa::Space::Global)
+  if (is_assembler && row.memory.space == isa::Space::Global && memory_use(inst).is_load())
     return kGlobalLoad;
   if (is_assembler && row.unit == isa::Unit::Sfu &&
       std::find(std::begin(kNames), std::end(kNames), row.name) != std::end(kNames))
