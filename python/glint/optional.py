@@ -7,7 +7,7 @@ from types import ModuleType
 from .errors import MissingPackage
 
 _DEBIAN = {"numpy": "python3-numpy", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib", "scipy": "python3-scipy",
-           "distributed": "python3-distributed", "pyarrow": "python3-pyarrow (or pip install pyarrow)"}
+           "distributed": "python3-distributed", "pyarrow": "it with `pip install pyarrow` (Debian 12 has no package of it)"}
 
 
 def require(name: str, purpose: str) -> ModuleType:

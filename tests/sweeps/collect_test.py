@@ -59,6 +59,9 @@ class Tables(SweepTest):
     def test_parquet_has_the_rows_of_the_csv(self):
         if not importlib.util.find_spec("pyarrow"):
             print("SKIPPED: collect_test.py Tables: no pyarrow, so Parquet was not tried")
+            self.write('workloads = ["WKND_SH"]\n[run]\nsize = "8x8"\nspp = 1\n')
+            self.glint("run", "sweep.toml")
+            self.assertIn("points.parquet was left out", self.glint("collect", "sweep.toml").stderr)
             return
         import pyarrow.parquet
         self.write(SWEEP.replace("[0, 8]", "[4, 8]"))
@@ -68,8 +71,7 @@ class Tables(SweepTest):
 
     def test_an_objective_that_is_no_metric_is_refused(self):
         self.write(SWEEP.replace("[0, 8]", "[4, 8]").replace('"cycles"', '"cycle"'))
-        self.glint("run", "sweep.toml")
-        self.assertIn("did you mean", self.glint("collect", "sweep.toml", code=2).stderr)
+        self.assertIn("did you mean", self.glint("run", "sweep.toml", code=2).stderr)
 
 
 class Effects(SweepTest):

@@ -1,6 +1,6 @@
 # Tests that a sweep on Slurm, on Dask and on Python's executors leaves the bytes of the local pool, also when workers and submitters are killed.
 # SPDX-License-Identifier: Apache-2.0
-"""usage: engines_test.py GLINT SOURCE_DIR [Slurm|Dask|Executors]. Slurm and Dask are started for real; a test skips where they are not installed."""
+"""usage: engines_test.py GLINT SOURCE_DIR [Slurm|Dask|Executors|Mpi|Parsl|Ray]. All are started for real; where one is not installed, its test skips and says so."""
 import concurrent.futures
 import contextlib
 import os
@@ -199,6 +199,61 @@ class Executors(EngineTest):
         with concurrent.futures.ThreadPoolExecutor(2) as executor:
             self.sweeps.run(self.folder / "sweep.toml", self.store, engine=self.sweeps.Engine(executor=executor))
         self.all_are_those_of_the_local_pool()
+
+
+# Open MPI 4 and 5 otherwise refuse more processes than there are cores, and to run as root.
+MPI = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+class OwnPool(EngineTest):
+    """Runs the sweep in a program of its own, because these pools keep their processes until the program ends."""
+    MODULE = ""
+    PROGRAM = """
+import glint.sweeps
+{pool}
+if __name__ == "__main__":
+    with make() as executor:
+        found = glint.sweeps.run("sweep.toml", "store", engine=glint.sweeps.Engine(executor=executor, chunk=3))
+    print(found.done, "done,", len(found.failures), "failed")
+"""
+
+    @classmethod
+    def setUpClass(cls):
+        need(cls.MODULE)
+        super().setUpClass()
+
+    def runs_the_sweep(self, pool, *before):
+        """Runs it with the executor that `make` of the lines `pool` gives. `before` is the command in front of the program, in place of Python's."""
+        program = self.write(self.PROGRAM.format(pool=pool), "program.py")
+        paths = os.pathsep.join(filter(None, (str(ROOT / "python"), os.environ.get("PYTHONPATH"))))
+        done = subprocess.run([*(before or [sys.executable]), program], cwd=self.folder, env={**os.environ, **MPI, "PYTHONPATH": paths}, capture_output=True, text=True, timeout=120)
+        self.assertIn("30 done, 0 failed", done.stdout, done.stderr)
+        self.all_are_those_of_the_local_pool()
+
+
+class Mpi(OwnPool):
+    MODULE = "mpi4py"
+
+    def test_a_pool_that_starts_its_workers_runs_a_sweep(self):
+        self.runs_the_sweep("from mpi4py.futures import MPIPoolExecutor\nmake = lambda: MPIPoolExecutor(2)")
+
+    def test_workers_that_mpiexec_has_started_run_a_sweep(self):
+        self.runs_the_sweep("from mpi4py.futures import MPIPoolExecutor as make", "mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures")
+
+
+class Parsl(OwnPool):
+    MODULE = "parsl"
+
+    def test_a_pool_of_parsl_runs_a_sweep(self):
+        self.runs_the_sweep("import parsl\nfrom parsl.concurrent import ParslPoolExecutor\nfrom parsl.configs.htex_local import config\nmake = lambda: ParslPoolExecutor(config)")
+
+
+class Ray(OwnPool):
+    MODULE = "ray"
+
+    def test_the_executor_of_the_documentation_runs_a_sweep(self):
+        lines = re.search(r"^class RayExecutor.*?(?=^```)", (ROOT / "docs/sweeps.md").read_text(), re.S | re.M)[0]
+        self.runs_the_sweep(f"import concurrent.futures\nimport ray\n{lines}\nmake = RayExecutor")
 
 
 if __name__ == "__main__":

@@ -62,6 +62,27 @@ class Points(SweepTest):
             with self.subTest(words):
                 self.refused(words, **more)
 
+    def test_mistakes_of_a_file_are_told_with_their_lines(self):
+        from glint.sweeps.planning import plan
+        from glint.sweeps.program import Program
+        program = Program(str(GLINT))
+        lines = ['workloads = ["WKND_SH"]', 'store = "store"', "[run]", 'size = "8x8"', "spp = 1", "[[design]]", "keys = { rt.warps = [2, 4] }"]
+        for line, old, new, words in ((2, "store =", "stroe =", "did you mean 'store'"), (1, "WKND", "WKNT", "did you mean 'WKND'"), (1, '["WKND_SH"]', "[1]", "a list of texts"),
+                                      (1, '["WKND_SH"]', '["WKND_SH", "WKND_SH"]', "twice"), (5, "spp = 1", "spq = 1", "did you mean '--spp'"), (5, "spp = 1", "spp = 0", "65536"), (4, "8x8", "8by8", "WIDTHxHEIGHT"),
+                                      (7, "[2, 4]", "[2, 0]", "expected 1 to 64"), (7, "rt.warps", "rt.warpz", "unknown key"), (7, "[2, 4]", "[2, 2]", "twice"), (7, "[2, 4]", '["two"]', "is a string"),
+                                      (6, "[2, 4]", "{ low = 1, high = 1000000000, step = 1 }", "1,000,000,000 points"), (7, "keys", 'method = "gird"\nkeys', "one of grid"),
+                                      (8, "keys = {", "[set]\nrt.warps = 4\n[[design]]\nkeys = {", "remove one"), (2, "store =", 'constraints = ["rt.warps > 99"]\nstore =', "leave none"),
+                                      (2, "store =", 'constraints = ["rt.warps >< 9"]\nstore =', "invalid syntax"), (2, "store =", 'constraints = ["rt.warpz > 9"]\nstore =', "is no key"),
+                                      (2, "store =", 'objectives = ["cyclez"]\nstore =', "did you mean 'cycles'"), (2, "store =", "name = 3\nstore =", "a folder's"), (3, "[run]", "[run", "no TOML"),
+                                      (6, "spp = 1", "spp = 1\nspp = 2", "no TOML")):
+            with self.subTest(new):
+                text = "\n".join(lines)
+                self.assertIn(old, text)
+                with self.assertRaises(self.sweeps.SweepError) as caught:
+                    plan(self.sweeps.read(self.write(text.replace(old, new))), program)
+                self.assertIn(f"sweep.toml:{line}: ", str(caught.exception))
+                self.assertIn(words, str(caught.exception))
+
     def test_a_point_is_named_by_what_it_depends_on(self):
         default = self.plan()[0]["id"]
         self.assertEqual(self.plan(design=[{"keys": {"rt.warps": [4]}}])[0]["id"], default)  # the preset's own value

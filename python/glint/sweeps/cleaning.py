@@ -19,7 +19,8 @@ def clean(store: Store, remove: bool) -> str:
     named = _named(store)
     damaged = [id for id in store.points() if id in named and store.damage(id)]
     with store.plans_kept_still() if remove else contextlib.nullcontext():
-        named = _named(store)  # again, because sweeps may have begun meanwhile
+        if remove:
+            named = _named(store)  # again, because sweeps may have begun meanwhile
         unnamed = [id for id in store.points() if id not in named]
         failures = [id for id in store.failed() if id not in named]
         folders = [SweepFolder.existing(store, name) for name in SweepFolder.names(store)]

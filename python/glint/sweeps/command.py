@@ -136,7 +136,7 @@ def _collect(given: argparse.Namespace) -> int:
     found = collect(named, given.store)
     folder = pathlib.Path(given.out or f"out/sweep-{found.definition.name}")
     folder.mkdir(parents=True, exist_ok=True)
-    objectives_of(found)
+    objectives_of(found.definition.objectives)
     files = write(found, folder) if given.action == "collect" else []
     if found.rows:
         write_whole(folder / "report.html", page_of(found, folder))
@@ -144,6 +144,8 @@ def _collect(given: argparse.Namespace) -> int:
     missing = f", {found.missing} not run yet" if found.missing else ""
     print(f"{found.definition.name}: {len(found.rows)} points, {len(found.failures)} failed{missing}")
     print("\n".join(f" {path}" for path in files))
+    if given.action == "collect" and not any(path.suffix == ".parquet" for path in files):
+        print("note: points.parquet was left out, because pyarrow is not installed (docs/sweeps.md)", file=sys.stderr)
     if found.damaged:
         print(f"warning: points with damaged files: {len(found.damaged)}, such as {found.damaged[0]}: `glint sweep gc --yes` removes them, and `resume` runs them again", file=sys.stderr)
     return 0

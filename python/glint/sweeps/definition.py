@@ -13,7 +13,8 @@ from ..documents import flat
 from ..errors import SweepError
 from ..patterns import near
 from .constraints import Constraint
-from .design import METHODS, points_of
+from .design import METHODS, check_values, number_of_points, points_of
+from .places import Places
 
 _KEYS = ("name", "store", "workloads", "configs", "seeds", "replicas", "run", "set", "design", "constraints", "stats", "report", "objectives", "limits", "retry", "engine",
          "threads", "slurm", "dask")
@@ -21,6 +22,7 @@ _OWN = {"out": "the store has a folder for each point", "config": "use `configs`
         "threads": "use `threads`", "json": "the results go to the store", "progress-fd": "it is Glint's own"}
 _FILES = ("launch", "shader-dir", "assets", "include")  # options of [run] that name files
 RETRIES = {"crash": 1, "timeout": 0, "memory": 1, "lost": 2}
+_MOST_POINTS = 4_000_000  # Choice: the list of points of such a sweep takes some 12 GB of memory (docs/scale.md).
 _DESIGN = ("method", "points", "seed", "keys", "list")
 
 
@@ -47,19 +49,28 @@ class Definition:
     slurm: dict[str, Any] = dataclasses.field(default_factory=dict)
     dask: dict[str, Any] = dataclasses.field(default_factory=dict)
     store: str | None = None
+    places = None  # a Places, which tells the lines of the sweep's file; it is kept nowhere
 
     @staticmethod
     def read(path: str | pathlib.Path) -> "Definition":
         """Returns the sweep of a file. Paths in it count from the file's folder. Raises SweepError, which names the file and what is wrong."""
         path = pathlib.Path(path)
+        text = _text_of(path)
+        places = Places(str(path), text)
         try:
-            tree = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise SweepError(f"{path}: the file cannot be read: {error}") from error
-        try:
-            return Definition.of({"name": path.stem, **tree}, path.resolve().parent)
+            made = Definition.of({"name": path.stem, **tomllib.loads(text)}, path.resolve().parent)
+        except tomllib.TOMLDecodeError as error:
+            what, _, where = str(error).partition(" (at ")
+            line = re.match(r"line (\d+)", where)
+            raise SweepError(f"{path}:{line[1] if line else max(1, len(text.splitlines()))}: the file is no TOML: {what}") from error
         except SweepError as error:
-            raise SweepError(f"{path}: {error}") from error
+            raise SweepError(places.told(str(error))) from error
+        made.places = places
+        return made
+
+    def told(self, message: str) -> str:
+        """Returns a message about the sweep behind the line of its file that it speaks of. A sweep of a dictionary has no lines."""
+        return self.places.told(message) if self.places else message
 
     @staticmethod
     def of(tree: Mapping[str, Any], folder: str | pathlib.Path = ".") -> "Definition":
@@ -74,18 +85,27 @@ class Definition:
             name=_name(tree.get("name", "sweep")), workloads=[_path(one, folder) for one in _texts(tree, "workloads", None)],
             configs=[_path(one, folder) for one in _texts(tree, "configs", ["mobile"])], seeds=_seeds(tree), options=options, oracles=oracles,
             settings=flat(_table(tree, "set")), designs=_designs(tree.get("design", [])), constraints=_texts(tree, "constraints", []),
-            stats=_word(tree, "stats", ("compact", "full"), "compact"), report=_flag(tree, "report"), objectives=_texts(tree, "objectives", ["cycles"]),
+            stats=_word(tree, "stats", ("compact", "full"), "compact"), report=_flag(tree, "report"), objectives=_objectives(_texts(tree, "objectives", ["cycles"])),
             timeout=seconds_of(limits["timeout"]) if "timeout" in limits else None, memory_limit=bytes_of(limits["memory"]) if "memory" in limits else None,
             retry={**RETRIES, **{kind: _whole(count, f"[retry] {kind}", 0) for kind, count in retry.items()}},
             engine=_word(tree, "engine", ("local", "slurm", "dask"), "local"), threads=_whole(tree.get("threads", 1), "threads", 1), slurm=_slurm(_table(tree, "slurm")),
-            dask=_table(tree, "dask"), store=str((folder / tree["store"]).resolve()) if "store" in tree else None)
+            dask=_chunked(_table(tree, "dask"), "dask"), store=str((folder / tree["store"]).resolve()) if "store" in tree else None)
         _known(made.dask, ("scheduler", "chunk"), "[dask]")
         if made.report and made.stats != "full":
             raise SweepError("`report` needs stats = \"full\": a report shows every unit, and compact statistics have totals alone")
         for text in made.constraints:
             Constraint(text)
-        made.settings_of_points()
+        made._check_designs()
         return made
+
+    def _check_designs(self) -> None:
+        both = [key for key in self.swept if key in self.settings]
+        if both:
+            raise SweepError(f"[set] has '{both[0]}', and a design has it, too: remove one of them")
+        count = sum(number_of_points(one["method"], one["keys"], one.get("points"), one["list"]) for one in self.designs)
+        if count > _MOST_POINTS:
+            raise SweepError(f"[[design]] has {count:,} points, and a sweep may have {_MOST_POINTS:,}: take fewer values, or sample them with another `method`")
+        self.settings_of_points()
 
     def settings_of_points(self) -> list[tuple[int, dict[str, Any]]]:
         """Returns the number of the design and the settings of every point, before workloads, configurations, seeds and constraints."""
@@ -140,16 +160,30 @@ def _table(tree: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 def _name(given: Any) -> str:
     if not isinstance(given, str) or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}", given):
-        raise SweepError(f"the name {given!r} cannot be a folder's: letters, digits, '_', '-' and '.' are allowed, up to 64 of them")
+        raise SweepError(f"`name` is {given!r}, which cannot be a folder's: letters, digits, '_', '-' and '.' are allowed, up to 64 of them")
     return given
 
 
 def _texts(tree: Mapping[str, Any], key: str, otherwise: list[str] | None) -> list[str]:
     given = tree.get(key, otherwise)
+    if given is None:
+        raise SweepError(f"`{key}` is missing: a list of texts is needed, such as {key} = [\"WKND_SH\"]")
     given = [given] if isinstance(given, (str, pathlib.PurePath)) else given
     if not isinstance(given, (list, tuple)) or not all(isinstance(one, (str, pathlib.PurePath)) for one in given) or (otherwise is None and not given):
         raise SweepError(f"`{key}` is {given!r}: a list of texts is needed")
-    return [str(one) for one in given]
+    return _different([str(one) for one in given], key)
+
+
+def _different(values: list[Any], key: str) -> list[Any]:
+    check_values(key, values)
+    return values
+
+
+def _objectives(texts: list[str]) -> list[str]:
+    if texts != ["cycles"]:
+        from .page import objectives_of  # which workers do not need
+        objectives_of(texts)
+    return texts
 
 
 def _word(tree: Mapping[str, Any], key: str, words: tuple[str, ...], otherwise: str) -> str:
@@ -178,7 +212,7 @@ def _seeds(tree: Mapping[str, Any]) -> list[int]:
     given = tree.get("seeds", [1])
     if not isinstance(given, list) or not given:
         raise SweepError(f"`seeds` is {given!r}: a list of whole numbers is needed")
-    return [_whole(one, "seeds", 0) for one in given]
+    return _different([_whole(one, "seeds", 0) for one in given], "seeds")
 
 
 def _path(given: str, folder: pathlib.Path) -> str:
@@ -244,5 +278,28 @@ def _ranges(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def _slurm(table: dict[str, Any]) -> dict[str, Any]:
     _known(table, ("options", "setup", "chunk", "python"), "[slurm]")
-    table["options"] = _texts(table, "options", [])
+    options = table.get("options", [])
+    if not isinstance(options, list) or not all(isinstance(one, str) for one in options):
+        raise SweepError(f"`[slurm] options` is {options!r}: a list of texts is needed")
+    for name in ("setup", "python"):
+        if not isinstance(table.get(name, ""), str):
+            raise SweepError(f"`[slurm] {name}` is {table[name]!r}: a text is needed")
+    return {**_chunked(table, "slurm"), "options": options}
+
+
+def _chunked(table: dict[str, Any], name: str) -> dict[str, Any]:
+    if "chunk" in table:
+        _whole(table["chunk"], f"[{name}] chunk", 1)
     return table
+
+
+def _text_of(path: pathlib.Path) -> str:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise SweepError(f"{path}: the file cannot be read: {error.strerror}") from error
+    try:
+        return data.decode()
+    except UnicodeDecodeError as error:
+        line = data[:error.start].count(b"\n") + 1
+        raise SweepError(f"{path}:{line}: the file is no TOML: byte 0x{data[error.start]:02x} does not belong to a text in UTF-8") from error

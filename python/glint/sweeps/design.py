@@ -6,7 +6,7 @@ from __future__ import annotations
 import itertools
 import math
 import random
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 from ..errors import SweepError
 from ..optional import require
@@ -26,6 +26,7 @@ class Axis:
         if isinstance(given, Mapping):
             self._read_range(dict(given))
         elif isinstance(given, (list, tuple)) and given:
+            check_values(key, given)
             self.values = list(given)
         else:
             raise SweepError(f"'{key}' is {given!r}: a list of values is needed, or a range {{ low = 1, high = 8 }}")
@@ -61,6 +62,12 @@ class Axis:
         count = math.floor((self.high - self.low) / self.step + 1e-9)
         return [self._plain(self.low + i * self.step) for i in range(count + 1)]
 
+    def count(self) -> int:
+        """Returns the number of all_values(), without making them."""
+        if self.values is None and self.scale != "power2" and self.step is not None:
+            return math.floor((self.high - self.low) / self.step + 1e-9) + 1
+        return len(self.all_values())
+
     def at(self, part: float) -> Any:
         """Returns the value at a part from 0 up to 1 of the axis."""
         if self.values is not None or self.scale == "power2" or (self.step is not None and self.scale == "linear"):
@@ -74,6 +81,24 @@ class Axis:
 
     def _plain(self, value: float) -> Any:
         return round(value) if self.integer else float(f"{value:.12g}")
+
+
+def check_values(key: str, values: Sequence[Any]) -> None:
+    """Raises SweepError when a value stands twice in a list."""
+    known = set()
+    for value in values:
+        if repr(value) in known:
+            raise SweepError(f"'{key}' has {value!r} twice: remove one of them")
+        known.add(repr(value))
+
+
+def number_of_points(method: str, keys: Mapping[str, Any], count: int | None, listed: list[Mapping[str, Any]]) -> int:
+    """Returns how many points points_of() gives, without making them. What is missing is told by points_of()."""
+    if method == "list":
+        return len(listed)
+    if method == "grid":
+        return math.prod(Axis(key, given).count() for key, given in keys.items())
+    return (count or 0) * (len(keys) + 2 if method == "saltelli" else 1)
 
 
 def points_of(method: str, keys: Mapping[str, Any], count: int | None, seed: int, listed: list[Mapping[str, Any]]) -> list[dict[str, Any]]:

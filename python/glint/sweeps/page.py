@@ -30,13 +30,13 @@ _PAGE = """<!doctype html>
 """
 
 
-def objectives_of(found: Collection) -> list[tuple[str, bool]]:
+def objectives_of(texts: list[str]) -> list[tuple[str, bool]]:
     """Returns the objectives of a sweep ("cycles", "thread_ipc:max") and whether more is better. Raises SweepError for a name that is no metric."""
     out = []
-    for text in found.definition.objectives:
+    for text in texts:
         name, _, aim = text.partition(":")
         if name not in metrics() or aim not in ("", "min", "max"):
-            raise SweepError(f"the objective '{text}' is none: it is a metric, and then :min or :max{near(name, metrics())}")
+            raise SweepError(f"`objectives` has '{text}': an objective is a metric, and then :min or :max{near(name, metrics())}")
         out.append((name, aim == "max" if aim else name in _MORE))
     return out
 
@@ -49,7 +49,7 @@ def page_of(found: Collection, folder: str | pathlib.Path) -> str:
 
 
 def _data(found: Collection, folder: pathlib.Path) -> dict[str, Any]:
-    objectives = objectives_of(found)
+    objectives = objectives_of(found.definition.objectives)
     names = [name for name in metrics() if any(row.get(name) is not None for row in found.rows)]
     columns = {name: _column([row.get(name) for row in found.rows]) for name in ("id", "workload", "config", "seed", *found.keys, *names)}
     axes = objectives if len(objectives) > 1 else [*objectives, *((name, False) for name in names if name != objectives[0][0] and name in (_SECOND, "dram_util", "ipc"))][:2]

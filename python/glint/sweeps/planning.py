@@ -30,11 +30,11 @@ def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
     raw = _raw(definition, program)
     kept = _within_constraints(definition, program, raw)
     if not kept:
-        raise SweepError("the sweep has no points" + (f": its constraints leave none of {len(raw)}" if raw else ""))
+        raise SweepError(definition.told(f"the sweep has no points: its `constraints` leave none of {len(raw)}; widen them, or sweep other values"))
     asked = [{"workload": one["workload"], "config": one["config"], "settings": [f"{key}={value}" for key, value in one["set"].items()], "oracles": definition.oracles,
               "options": one["options"], "keys": list(one["set"])} for one in kept]
     answers = _answers(program, asked)
-    _refuse(kept, answers)
+    _refuse(definition, kept, answers)
     names = _Contents(program)
     points = []
     for index, (one, answer) in enumerate(zip(kept, answers)):
@@ -83,13 +83,16 @@ def _within_constraints(definition: Definition, program: Program, raw: list[dict
     answers = ask(program, asked)[1:]
     for config, answer in zip(definition.configs, answers):
         if "error" in answer:
-            raise SweepError(f"config {config}: {answer['error']}")
+            raise SweepError(definition.told(f"config '{config}': {answer['error']}"))
     bases = {config: {key: number_of(text) for key, text in answer["keys"].items()} for config, answer in zip(definition.configs, answers)}
     kept = []
     for one in raw:
         values = {**bases[one["config"]], **one["values"], "workload": one["workload"], "config": one["config"], "seed": one["seed"]}
-        if all(constraint.holds(values) for constraint in constraints):
-            kept.append(one)
+        try:
+            if all(constraint.holds(values) for constraint in constraints):
+                kept.append(one)
+        except SweepError as error:
+            raise SweepError(definition.told(str(error))) from error
     return kept
 
 
@@ -113,7 +116,7 @@ def _answers(program: Program, asked: list[dict[str, Any]]) -> list[dict[str, An
         return [answer for part in pool.map(lambda one: ask(program, one)[1:], slices) for answer in part]
 
 
-def _refuse(points: list[dict[str, Any]], answers: Iterable[dict[str, Any]]) -> None:
+def _refuse(definition: Definition, points: list[dict[str, Any]], answers: Iterable[dict[str, Any]]) -> None:
     wrong: dict[str, list[str]] = {}
     for point, answer in zip(points, answers):
         if "error" in answer:
@@ -124,7 +127,8 @@ def _refuse(points: list[dict[str, Any]], answers: Iterable[dict[str, Any]]) -> 
     lines = [f"{count} of {len(points)} points are wrong, so nothing was run:"]
     for message, titles in list(wrong.items())[:_SHOWN]:
         more = f" (and {len(titles) - 1} more)" if len(titles) > 1 else ""
-        lines += [f"  {titles[0]}{more}", *(f"    {line}" for line in message.splitlines())]
+        place = f"{definition.places.of(message)}: " if definition.places else ""
+        lines += [f"  {place}{titles[0]}{more}", *(f"    {line}" for line in message.splitlines())]
     if len(wrong) > _SHOWN:
         lines.append(f"  ... and {len(wrong) - _SHOWN} other messages")
     raise SweepError("\n".join(lines))
