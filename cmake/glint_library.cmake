@@ -6,10 +6,11 @@
 # include them. POLICIES are folders in which each file registers one policy and nothing else refers to it; the archive
 # of the rest is then glint_<name>_mechanism. PRECOMPILE, in `base`, are its headers that are parsed once for all folders
 # (glint_precompile); headers of other folders cost more to write and to load than to parse. COLD says that the folder
-# takes no part in the machines' loops: it is optimised for a quick build. With GLINT_UNITY several files of a folder are
+# takes no part in the machines' loops: it is optimised for a quick build. COLDEST says that it only reads requests and
+# writes results, which takes milliseconds of a run: little is optimised. With GLINT_UNITY several files of a folder are
 # compiled at a time, except policies: names in anonymous namespaces are therefore unique within a folder.
 function(glint_library name)
-  cmake_parse_arguments(ARG "COLD" "" "FLOORS;DEPENDS;LINKS;POLICIES;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;COLDEST" "" "FLOORS;DEPENDS;LINKS;POLICIES;PRECOMPILE" ${ARGN})
   list(TRANSFORM ARG_DEPENDS PREPEND glint::)
   glint_glob(sources *.cpp . ${ARG_FLOORS})
   glint_glob(headers *.h . ${ARG_FLOORS} ${ARG_POLICIES})
@@ -30,8 +31,10 @@ function(glint_library name)
   else()
     target_precompile_headers(${archive} REUSE_FROM glint_base)
   endif()
-  if(ARG_COLD)
-    glint_cold(${archive})
+  if(ARG_COLDEST)
+    glint_cold(${archive} -O1)
+  elseif(ARG_COLD)
+    glint_cold(${archive} -O2)
   else()
     set_target_properties(${archive} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 6)
   endif()
@@ -67,9 +70,9 @@ function(glint_glob variable pattern)
   set(${variable} ${found} PARENT_SCOPE)
 endfunction()
 
-# glint_cold(target) does what COLD says above. Large batches pay most where headers of packages are heavy.
-function(glint_cold target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
+# glint_cold(target level) does what COLD and COLDEST say above. Large batches pay most where headers of packages are heavy.
+function(glint_cold target level)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 

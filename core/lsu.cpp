@@ -19,7 +19,7 @@ Lsu::Lsu(const Params& params, mem::L1Port& l1)
       samples_per_cycle_(params.texture.samples_per_cycle),
       own_queue_(params.texture.queue > 0),
       own_door_(params.texture.own_door),
-      accesses_(params.lsu.accesses) {
+      accesses_(params.lsu.accesses, mem::Filling::Sparse) {
   groups_[0].capacity = params.lsu.queue;
   groups_[1].capacity = params.texture.queue;
   for (uint32_t sectors = 0; sectors < sector_cycles_.size(); ++sectors)

@@ -138,7 +138,7 @@ class AddressSpace {
   uint64_t num_slots(uint64_t first) const;
   uint64_t size_of(const Slot& slot) const { return slot.bytes - slot.skipped; }
 
-  HostArray<Slot> slots_{kMaxSlots};
+  HostArray<Slot> slots_{kMaxSlots, Filling::Sparse};
   std::vector<std::string> names_;  // by slot; those of freed allocations stay for messages
   std::vector<Bytes> backings_;
   std::vector<Backing> free_backings_;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/scene.h"
 
-#include <bit>
 #include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
@@ -18,6 +17,7 @@
 #include "scenes/instancing.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/motions/built_in.h"
+#include "scenes/scene_hash.h"
 
 namespace glint::scenes {
 namespace {
@@ -96,54 +96,6 @@ const std::vector<Entry>& all_scenes() {
       {"CORNELL", "The Cornell box alone, for tests; not a LumiBench scene.", 0, build_cornell},
   };
   return scenes;
-}
-
-// Hashes contents with FNV-1a, widened to 64-bit words and finished as in MurmurHash3. It takes values, never
-// the bytes of structs, so neither padding nor byte order changes the hash.
-class ContentHash {
- public:
-  void add(uint64_t word) { state_ = (state_ ^ word) * 0x100000001b3 ^ state_ >> 29; }
-  void add(float value) { add(uint64_t{std::bit_cast<uint32_t>(value)}); }
-  // Takes a vector, or a matrix in the order of its floats.
-  template <class Values>
-  requires(Values::length() > 0) void add(const Values& values) {
-    for (size_t i = 0; i < Values::length(); ++i) add(values[i]);
-  }
-  uint64_t result() const {
-    uint64_t x = state_;
-    x = (x ^ x >> 33) * 0xff51afd7ed558ccd;
-    x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53;
-    return x ^ x >> 33;
-  }
-
- private:
-  uint64_t state_ = 0xcbf29ce484222325;
-};
-
-void add(ContentHash& hash, const Model& model) {
-  hash.add(uint64_t{model.vertices.size()});
-  for (const Vertex& v : model.vertices) {
-    hash.add(v.position);
-    hash.add(v.normal);
-    hash.add(v.texture_coordinate);
-    hash.add(uint64_t(uint32_t(v.material)));
-  }
-  hash.add(uint64_t{model.indices.size()});
-  for (const uint32_t index : model.indices) hash.add(uint64_t{index});
-  hash.add(model.center);
-  hash.add(model.radius);
-}
-
-void add(ContentHash& hash, const Texture& texture) {
-  hash.add(uint64_t{texture.width} << 32 | texture.height);
-  if (texture.srgb || texture.repeat) hash.add(uint64_t{texture.srgb} << 1 | uint64_t{texture.repeat});
-  for (const uint8_t byte : texture.rgba) hash.add(uint64_t{byte});
-}
-
-void add(ContentHash& hash, const Camera& c) {
-  for (const Vec3& v : {c.eye, c.target, c.up, c.light_position}) hash.add(v);
-  for (const float value : {c.field_of_view, c.aperture, c.focus_distance, c.light_radius}) hash.add(value);
-  hash.add(uint64_t{c.has_sky});
 }
 
 uint64_t triangles_of(const Model& model) {
@@ -244,26 +196,7 @@ uint64_t Scene::procedurals() const {
 }
 
 uint64_t Scene::hash() const {
-  ContentHash content;
-  content.add(uint64_t{models.size()});
-  for (const Model& model : models) add(content, model);
-  for (const Instance& instance : instances) {
-    content.add(uint64_t{instance.model});
-    content.add(instance.to_world);
-  }
-  content.add(uint64_t{materials.size()});
-  for (const Material& m : materials) {
-    content.add(m.diffuse);
-    content.add(uint64_t(uint32_t(m.texture)));
-    content.add(m.fuzziness);
-    content.add(m.refraction_index);
-    content.add(uint64_t(m.model));
-  }
-  content.add(uint64_t{textures.size()});
-  for (const Texture& texture : textures) add(content, texture);
-  add(content, camera);
-  content.add(uint64_t{alpha_test});
-  return content.result();
+  return scene_hash(*this, 1);
 }
 
 std::vector<SceneInfo> scene_list() {

@@ -21,7 +21,10 @@ class Mshr {
   static constexpr uint32_t kNone = LineTable::kNone;
 
   Mshr(uint32_t entries, uint32_t merges)
-      : entries_(entries), waiters_(size_t(entries) * merges), index_(entries), merges_(merges) {
+      : entries_(entries),
+        waiters_(size_t(entries) * merges, Filling::Sparse),
+        index_(entries),
+        merges_(merges) {
     for (uint32_t i = 0; i < entries_.size(); ++i)
       entries_[i].first = i + 1 < entries_.size() ? i + 1 : kNone;
   }

@@ -206,7 +206,7 @@ class Harness(DocsTest):
     def test_scenes_and_suites_are_reduced_and_nothing_else_is(self):
         import reduced
         os.environ["GLINT_DOCS_BENCH"] = "WKND_PT SHIP_SH"
-        for written, run in (("run SHIP --size 64x64 --spp 4 --out x", "run SHIP --out x --size 16x16 --spp 1"), ("run PARK_PT", "run BATH_PT --size 16x16 --spp 1"),
+        for written, run in (("run SHIP --size 64x64 --spp 4 --out x", "run SHIP --out x --size 16x16 --spp 1"), ("run PARK_PT", "run BUNNY_PT --size 16x16 --spp 1"),
                              ("bench subset --out x", "bench WKND_PT SHIP_SH --out x --size 16x16 --spp 1"), ("bench SHIP_SH", "bench SHIP_SH --size 16x16 --spp 1"),
                              ("run mine/pipeline.toml --size 64x64", None), ("run shaders/kernels/saxpy.toml", None), ("stats out/a", None), ("run bfs --small", None), ("run --help", None),
                              ("ablate mobile desktop", "ablate mobile desktop --plan")):

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "frontend/cache.h"
 #include "pipeline/render.h"
 #include "tests/support/preset.h"
 
@@ -21,10 +22,13 @@ inline const char* shader_folder(pipeline::Workload workload) {
   return "";
 }
 
-// Returns `size` x `size` pixels of a built-in scene on a small GPU of two cores.
+// Returns `size` x `size` pixels of a built-in scene on a small GPU of two cores. A program compiles each of
+// its shaders once for all its jobs.
 inline pipeline::RenderJob small_job(const std::string& scene, pipeline::Workload workload, uint32_t size,
                                      uint32_t samples, const std::string& assets = {}) {
+  static frontend::ShaderCache shaders({});  // in memory only
   pipeline::RenderJob job;
+  job.glsl.cache = &shaders;
   job.scene = scenes::load_scene(scene, {assets});
   job.workload = workload;
   job.frame.width = job.frame.height = size;

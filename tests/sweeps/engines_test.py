@@ -18,7 +18,7 @@ from sweeps_case import ROOT, SKIPPED, SweepTest, contents, main, need, points_i
 
 SWEEP = """
 name = "thir-ty"
-workloads = ["WKND_SH", "SHIP_SH"]
+workloads = ["SHIP_SH", "SHIP_AO"]
 [run]
 size = "16x16"
 spp = 1

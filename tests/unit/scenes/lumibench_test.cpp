@@ -30,18 +30,18 @@ struct Expected {
   uint64_t hash;
 };
 
-constexpr Expected kBuiltIn[] = {{"SPNZA", 1, 24, 262'267, 99, 100, 0x614bd157863fc5d0},
-                                 {"CHSNT", 1, 2, 313'000, 45, 85, 0x64c669021d226a01},
-                                 {"BATH", 47, 0, 423'821, 99, 100, 0x43dfd01290e9907e},
-                                 {"CRNVL", 1, 0, 449'600, 50, 85, 0xed05736f5a50414e},
-                                 {"FOX", 37, 0, 1'600'000, 20, 55, 0x07a9972b124c2b5e},
-                                 {"PARTY", 320, 0, 1'700'000, 88, 100, 0xb18ceb50ff121b4a},
-                                 {"SPRNG", 51, 0, 1'900'000, 99, 100, 0x4dc10ca41a76a73b},
-                                 {"LANDS", 26, 0, 3'300'000, 99, 100, 0x5f9b0afc917735e2},
-                                 {"FRST", 283, 0, 4'200'000, 55, 75, 0x99968063edde6fde},
-                                 {"PARK", 37, 0, 6'000'000, 70, 92, 0x31dd21f74a75cb85},
-                                 {"CAR", 302, 244, 12'700'000, 55, 80, 0xb80367f7a364e859},
-                                 {"ROBOT", 248, 0, 20'600'000, 45, 70, 0x51baddf7e4c15ec6}};
+constexpr Expected kBuiltIn[] = {{"SPNZA", 1, 24, 262'267, 99, 100, 0x454528d64be067c1},
+                                 {"CHSNT", 1, 2, 313'000, 45, 85, 0xe8678d7b5e3b0681},
+                                 {"BATH", 47, 0, 423'821, 99, 100, 0xdf58d75f09285172},
+                                 {"CRNVL", 1, 0, 449'600, 50, 85, 0x671adb121be19d36},
+                                 {"FOX", 37, 0, 1'600'000, 20, 55, 0xd613385f4c9107ee},
+                                 {"PARTY", 320, 0, 1'700'000, 88, 100, 0x98d034e5f5f48963},
+                                 {"SPRNG", 51, 0, 1'900'000, 99, 100, 0x70ca3965d80a04c9},
+                                 {"LANDS", 26, 0, 3'300'000, 99, 100, 0x397d5322c0d366df},
+                                 {"FRST", 283, 0, 4'200'000, 55, 75, 0x86446ac3aac4e80b},
+                                 {"PARK", 37, 0, 6'000'000, 70, 92, 0xb054327b8ced8323},
+                                 {"CAR", 302, 244, 12'700'000, 55, 80, 0x7553ef3480974b7e},
+                                 {"ROBOT", 248, 0, 20'600'000, 45, 70, 0x1a1f96244e3e4a3b}};
 
 // Scenes with more triangles are made only with GLINT_LARGE_SCENES, because they take seconds and gigabytes.
 constexpr double kQuick = 2e6;
