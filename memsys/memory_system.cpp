@@ -48,6 +48,10 @@ uint32_t MemorySystem::warm(Address line, uint8_t sectors, Touch touch, Displace
   return partitions_[map_.partition_of(slice)]->warm(slice, line, sectors, touch, displaced);
 }
 
+void MemorySystem::share_with(uint32_t others) {
+  for (const auto& partition : partitions_) partition->share_with(others);
+}
+
 uint64_t MemorySystem::dirty_sectors() const {
   uint64_t sum = 0;
   for (const auto& partition : partitions_)

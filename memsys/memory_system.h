@@ -51,6 +51,11 @@ class MemorySystem {
   // made way and that DRAM had not got yet.
   uint32_t warm(Address line, uint8_t sectors, Touch touch = Touch::Read,
                 Displaced displaced = Displaced::Lost);
+  // Lets the L2 hold lines of `others` further machines like this one, which would share it: for each access
+  // to memory of one thread that the L2 serves, each of them touches a line of its own there. These take no
+  // time and count nothing. Dirty lines that make way for them are written back as with
+  // Displaced::WrittenLater.
+  void share_with(uint32_t others);
   // Returns the number of sectors that the L2 holds and DRAM has not got yet.
   uint64_t dirty_sectors() const;
 

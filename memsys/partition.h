@@ -51,6 +51,11 @@ class Partition final : public Cell {
     return slices_[slice % slices_.size()]->warm(line, sectors, touch, displaced);
   }
 
+  // Does MemorySystem::share_with().
+  void share_with(uint32_t others) {
+    for (const auto& slice : slices_) slice->share_with(others);
+  }
+
   void finish(Cycle end);  // counts the cycles up to the end of the run under their reasons
   IntervalSampler& sampler() { return sampler_; }
   const DramModel& dram() const { return *dram_; }

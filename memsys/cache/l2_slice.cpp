@@ -130,6 +130,14 @@ uint32_t L2Slice::warm(Address line, uint8_t sectors, Touch touch, Displaced dis
   return lost;
 }
 
+// Touches a line of each other part of the machine, where the packet is for memory of one thread. These lines
+// lie above all that is in use. They hold no data, so they are never dirty.
+void L2Slice::touch_others(const Packet& packet) {
+  const Address apart = kMaxPhysicalBytes / (others_ + 1) / line_bytes_ * line_bytes_;
+  for (uint32_t i = 1; i <= others_; ++i)
+    warm(packet.line + i * apart, packet.sectors, Touch::Read, Displaced::WrittenLater);
+}
+
 uint64_t L2Slice::dirty_sectors() const {
   uint64_t sum = 0;
   for (uint32_t slot = 0; slot < tags_.num_lines(); ++slot) sum += num_sectors(tags_.line(slot).dirty);
@@ -150,6 +158,7 @@ void L2Slice::serve(Cycle now) {
   ++packets_received_;
   port_.take(now);
   occupy(now, packet);
+  if (others_ && is_local(packet.traffic)) touch_others(packet);
   if (is_atomic(packet)) atomic_line_ = packet.line;
   if (packet.write) written_until_ = busy_until_;
 }

@@ -108,6 +108,8 @@ class L2Slice {
 
   // Does MemorySystem::warm().
   uint32_t warm(Address line, uint8_t sectors, Touch touch, Displaced displaced);
+  // Does MemorySystem::share_with().
+  void share_with(uint32_t others) { others_ = others; }
   uint64_t dirty_sectors() const;  // number of sectors that it holds and DRAM has not got yet
 
   Ring<ToDram>& to_dram() { return to_dram_; }
@@ -153,6 +155,7 @@ class L2Slice {
   }
   void queue_for_dram(Cycle ready, Address line, uint8_t sectors, bool write);
   uint8_t sectors_leaving(const TagArray::Line& victim) const;
+  void touch_others(const Packet& packet);
   void evict(Cycle now, const TagArray::Line& victim);
   void send_reply(Cycle now, const Reply& reply);
   Cycle head_received() const;
@@ -178,7 +181,8 @@ class L2Slice {
   LineSet seen_;
   Ring<HitReply> hit_replies_;
   Ring<ToDram> to_dram_;
-  Ring<DirtyLine> displaced_;  // by warm(); they are still to be written back
+  Ring<DirtyLine> displaced_;  // by warm() or touch_others(); they are still to be written back
+  uint32_t others_ = 0;        // see MemorySystem::share_with()
   Cycle busy_until_ = 0;
   Cycle busy_parts_ = 0;               // busy_until_ in parts of a cycle, before it was rounded up
   Address atomic_line_ = ~Address{0};  // line of the last atomic

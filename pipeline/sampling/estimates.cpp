@@ -15,6 +15,9 @@ namespace {
 // counts and as differences for fractions. With them, intervals cover at least 95 % of what whole runs count.
 // Source: bench/sampling_table.py over the 46 workloads at 512x512 on `mobile` (docs/sampling.md).
 constexpr MethodError kError{.cycles = 0.03, .l1 = 0.01, .l2 = 0.03, .utilisation = 0.04};
+// These do where stacks leave the L2. Source: bench/sampling/desktop.csv, 30 workloads at 512x512 on
+// `desktop`.
+constexpr MethodError kErrorOfFullL2{.cycles = 0.07, .l1 = 0.01, .l2 = 0.03, .utilisation = 0.04};
 // These do for launches whose blocks touch lines of their own. Source: the same over the launches of
 // bench/sampled_launches.py.
 constexpr MethodError kErrorOfOwnLines{.cycles = 0.06, .l1 = 0.05, .l2 = 0.07, .utilisation = 0.05};
@@ -77,7 +80,9 @@ std::vector<Estimate> estimate(const SampleCounts& counts) {
   const double scale = counts.plan->scale;
   const bool has_rays = at(counts.total, BatchCount::Nodes) > 0;
   const BatchCount measure = has_rays ? BatchCount::Nodes : BatchCount::Instructions;
-  const MethodError& own = counts.writes_are_missing ? kError : kErrorOfOwnLines;
+  const MethodError& own = !counts.writes_are_missing ? kErrorOfOwnLines
+                           : counts.stacks_leave_l2   ? kErrorOfFullL2
+                                                      : kError;
   RunSums sums;
   sums.instructions = sum_over_strata(counts, BatchCount::Instructions, &BlockWork::instructions);
   if (has_rays) sums.nodes = sum_over_strata(counts, BatchCount::Nodes, &BlockWork::nodes);
@@ -88,14 +93,20 @@ std::vector<Estimate> estimate(const SampleCounts& counts) {
                  rest * rest * slope.variance + std::pow(slope.value / scale, 2) * work.variance};
   for (size_t i = 0; i < kFractions.size(); ++i) {
     const auto& [which, above, below, error] = kFractions[i];
-    const double x = at(counts.total, below);
-    double y = at(counts.total, above);
-    if (which == Quantity::DramUtilisation && counts.writes_are_missing)
-      y += missing_write_clocks(counts, measure, work.value);
+    const bool is_dram = which == Quantity::DramUtilisation;
+    const double of_sample = at(counts.total, below);
+    // Choice: where stacks leave the L2, full batches tell what was read of the work that the sample lacks.
+    // Other samples, and DRAM's use, do as well or better without (docs/sampling.md).
+    const auto count_of = [&](BatchCount count) {
+      const double lacking = counts.stacks_leave_l2 && !is_dram ? rest : 0;
+      return at(counts.total, count) + lacking * quotient(counts, count, measure).value;
+    };
+    const double x = count_of(below);
+    double y = count_of(above);
+    if (is_dram && counts.writes_are_missing) y += missing_write_clocks(counts, measure, work.value);
     // A few reads may all hit, and say nothing of the launch's first ones, which miss. DRAM's clocks are
     // many.
-    const bool says_enough =
-        which == Quantity::DramUtilisation || x * own.*error * own.*error >= kLargestVariance;
+    const bool says_enough = is_dram || of_sample * own.*error * own.*error >= kLargestVariance;
     if (x > 0 && says_enough)
       sums.fractions[i] = {std::clamp(y / x, 0.0, 1.0), quotient(counts, above, below).variance};
   }

@@ -36,6 +36,7 @@ struct SampleCounts {
   std::vector<SampleBatch> batches;
   BatchCounts total{};             // of the sample, from its launch to its end
   bool writes_are_missing = true;  // DRAM does not get the dirty lines that functional blocks displace
+  bool stacks_leave_l2 = false;    // those of the whole machine do not fit into it
   DramTraffic traffic{};           // at its end
   // These had been counted when a half of the timed blocks had started.
   BatchCounts half{};
@@ -47,12 +48,13 @@ struct SampleCounts {
 // Cycles are those of the sample and, for the work that it lacks, the batches' cycles for each node visited,
 // or for each instruction in a launch without rays (a ratio estimator). The start and the end of a launch,
 // when the machine is not full, are so counted once. The work of the launch is summed over strata. Other
-// estimates are quotients of the sample's counts. A hit rate is left out where the sample has so few reads
-// that chance alone could be a larger error than the method's. The use of DRAM also has the writes that the
-// sample has left to be done: a whole launch writes back all that it makes dirty, but for what the L2 still
-// holds at its end, which is its part of all that went through the L2. An interval has two parts: the scatter
-// of the batches, with Student's quantile for their number, and the method's own error (docs/sampling.md),
-// since a sample's caches and order are not those of the whole launch.
+// estimates are quotients of the sample's counts, or, where the machine's stacks do not fit into the L2, hit
+// rates are those of counts that are estimated as cycles are. A hit rate is left out where the sample has so
+// few reads that chance alone could be a larger error than the method's. The use of DRAM also has the writes
+// that the sample has left to be done: a whole launch writes back all that it makes dirty, but for what the
+// L2 still holds at its end, which is its part of all that went through the L2. An interval has two parts:
+// the scatter of the batches, with Student's quantile for their number, and the method's own error
+// (docs/sampling.md), since a sample's caches and order are not those of the whole launch.
 std::vector<Estimate> estimate(const SampleCounts& counts);
 
 }  // namespace glint::pipeline

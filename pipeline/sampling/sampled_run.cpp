@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/diagnostics.h"
+#include "core/core_cell.h"
 #include "pipeline/launch_part.h"
 #include "pipeline/run_stats.h"
 #include "pipeline/sampling/survey.h"
@@ -44,14 +45,15 @@ DramTraffic traffic_of(const TimingMachine& machine, uint64_t unwritten_sectors)
 class Sampler final : public LaunchPart {
  public:
   Sampler(const SamplePlan& plan, TimingMachine& machine, const exec::World& world,
-          std::vector<BlockWork> surveyed, mem::Displaced displaced)
+          std::vector<BlockWork> surveyed, mem::Displaced displaced, bool is_shared)
       : plan_(plan),
         machine_(machine),
         displaced_(displaced),
+        is_shared_(is_shared),
         warmer_(
             world, machine.params().core.instruction_budget, machine.params().memory,
             [this](Address line, uint8_t sectors, mem::Touch touch) {
-              return machine_.memory().warm(line, sectors, touch, displaced_);
+              return machine_.memory().warm(line, sectors, touch, fate());
             },
             Written::AsRead) {
     work_[size_t(Stratum::Surveyed)] = std::move(surveyed);
@@ -83,9 +85,16 @@ class Sampler final : public LaunchPart {
  private:
   void warm(uint32_t until) {
     for (; next_warm_ < plan_.warm.size() && plan_.warm[next_warm_].block < until; ++next_warm_) {
+      stratum_ = plan_.warm[next_warm_].stratum;
       const WorkCounts counts = warmer_.run(plan_.warm[next_warm_].block);
-      work_[size_t(plan_.warm[next_warm_].stratum)].push_back({counts.instructions(), counts.rays.nodes});
+      work_[size_t(stratum_)].push_back({counts.instructions(), counts.rays.nodes});
     }
+  }
+  // Returns what becomes of dirty lines that make way for those of the block that runs functionally. Where
+  // other parts share the L2, blocks of a segment take places as those of other parts would. All other blocks
+  // come at once, between two segments, and would push out stacks that are in use.
+  mem::Displaced fate() const {
+    return is_shared_ && stratum_ == Stratum::Inside ? mem::Displaced::WrittenLater : displaced_;
   }
   DramTraffic traffic() const {
     return traffic_of(machine_, machine_.memory().dirty_sectors() + warmer_.lost_sectors());
@@ -102,6 +111,8 @@ class Sampler final : public LaunchPart {
   const SamplePlan& plan_;
   TimingMachine& machine_;
   const mem::Displaced displaced_;
+  const bool is_shared_;
+  Stratum stratum_ = Stratum::Inside;  // of the block that runs functionally
   Warmer warmer_;
   size_t next_warm_ = 0, next_start_ = 0, segment_ = 0;
   uint32_t last_started_ = 0, first_wave_ = 0;
@@ -121,6 +132,7 @@ SampleCounts Sampler::finish(Cycle cycles) {
           .batches = std::move(batches_),
           .total = counts_of(machine_, cycles),
           .writes_are_missing = displaced_ == mem::Displaced::Lost,
+          .stacks_leave_l2 = is_shared_,
           .traffic = at_end,
           .half = half_,
           .traffic_of_half = traffic_of_half_};
@@ -129,6 +141,13 @@ SampleCounts Sampler::finish(Cycle cycles) {
 // Returns the blocks of the launch that the machine holds at a time.
 uint32_t resident_blocks(const GpuParams& gpu, const exec::World& world) {
   return std::max(1u, residency_of(gpu, world).blocks * gpu.cores);
+}
+
+// Returns which share of the L2 the stacks of all threads would fill that the machine holds at a time.
+double stacks_in_l2(const GpuParams& gpu, const exec::World& world) {
+  const mem::Params& memory = gpu.memory;
+  return double(core::CoreCell::local_bytes(gpu.core, world)) * gpu.cores /
+         double(memory.l2.slice_size * memory.num_slices());
 }
 
 // Returns the blocks in a row of the grid, or 0 when it has one row or none.
@@ -152,10 +171,12 @@ SampledRun run_sampled(const exec::World& world, const GpuParams& gpu, const Sam
   std::vector<BlockWork> surveyed = run_survey(world, gpu, survey, result.faults);
   run.plan =
       plan_sample(options, num_blocks, resident_blocks(cut(gpu, scale), world), scale, survey, row_of(world));
+  const bool is_shared = !is_private && scale > 1 && stacks_in_l2(gpu, world) > 1;
   const GpuParams part = cut(gpu, scale, footprint_share(survey, run.plan));
   auto machine = std::make_unique<TimingMachine>(part, world, false, HostOptions{.threads = threads});
   Sampler sampler(run.plan, *machine, world, std::move(surveyed),
-                  is_private ? mem::Displaced::WrittenLater : mem::Displaced::Lost);
+                  is_private ? mem::Displaced::WrittenLater : mem::Displaced::Lost, is_shared);
+  if (is_shared) machine->memory().share_with(scale - 1);
   result.cycles = machine->run(watch, &sampler);
   result.end = machine->end();
   result.progress = machine->progress();

@@ -74,12 +74,12 @@ class MemoryRig {
   }
   // Issues one read at `at` (not before now) on an otherwise idle system, and returns the cycle in which its
   // token came back.
-  Cycle read_latency(Address line, uint8_t sectors, bool write = false) {
+  Cycle read_latency(Address line, uint8_t sectors, bool write = false, Traffic traffic = Traffic::RtNode) {
     const Cycle start = now_;
     const size_t before = answers_.size();
     run([&](uint32_t core, Cycle now) {
       if (core == 0 && now == start)
-        memory_.l1(0).access(now, Client::Lsu, {line, sectors, write, Traffic::RtNode, 1});
+        memory_.l1(0).access(now, Client::Lsu, {line, sectors, write, traffic, 1});
       return kNever;
     });
     return answers_.size() == before ? 0 : answers_.back().at - start;

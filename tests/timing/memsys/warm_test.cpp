@@ -102,3 +102,23 @@ TEST_CASE("A dirty line that makes way itself goes before those that are written
   rig.read_latency(4 * kStride, 0b0001);
   CHECK(writes(rig) == 4);
 }
+
+TEST_CASE(
+    "Machines that share the L2 take a place each for an access to memory of a thread, and for no other") {
+  struct Shared {
+    uint32_t others = 0;
+    Traffic traffic = Traffic::ShaderLocal;
+    uint64_t writes = 0;
+  };
+  for (const Shared& shared :
+       {Shared{0, Traffic::ShaderLocal, 0}, Shared{1, Traffic::ShaderLocal, 3},
+        Shared{2, Traffic::ShaderLocal, 3}, Shared{2, Traffic::RtStack, 3}, Shared{2, Traffic::RtNode, 0}}) {
+    MemoryRig rig(two_lines());
+    rig.memory().share_with(shared.others);
+    rig.memory().warm(0, 0b0111, Touch::Write);
+    rig.read_latency(kStride, 0b0001, false, shared.traffic);
+    CHECK(writes(rig) == shared.writes);
+    CHECK(reads(rig) == 1);
+    CHECK(rig.memory().dirty_sectors() == 3 - shared.writes);
+  }
+}
