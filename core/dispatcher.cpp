@@ -9,10 +9,12 @@
 namespace glint::core {
 
 Dispatcher::Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores,
-                       std::span<const uint32_t> chosen)
+                       bool in_clusters, std::span<const uint32_t> chosen)
     : launch_latency_(params.launch_latency),
       warp_launch_latency_(params.warp_launch_latency),
-      interval_parts_(Cycle(std::lround(params.grid_interval * double(kParts)))),
+      interval_parts_(Cycle(std::lround(
+          (in_clusters && params.cluster_interval > 0 ? params.cluster_interval : params.grid_interval) *
+          double(kParts)))),
       chosen_(chosen),
       num_blocks_(chosen.empty() ? num_blocks : uint32_t(chosen.size())),
       cores_(std::move(cores)) {

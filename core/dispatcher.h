@@ -14,13 +14,14 @@ namespace glint::core {
 // Acts only between windows. It gives one block to each core in turn, with the cores in their fixed order, so
 // the assignment is a function of the model and not of how cells are run. Room that becomes free in a window
 // is filled at the window's end. Model: hardware would fill it some cycles earlier or later; windows are
-// shorter than a memory access. Blocks start in launch order, `grid_interval` apart: one unit of the GPU
-// starts them all.
+// shorter than a memory access, and `refill_latency` counts from the cycle that a block ends in. Blocks start
+// in launch order, `grid_interval` apart, or `cluster_interval` with `in_clusters` (exec::World): one unit of
+// the GPU starts them all.
 class Dispatcher {
  public:
   // `chosen` are the blocks that run, in their order; when it is empty, all `num_blocks` run. What it refers
   // to outlives the dispatcher.
-  Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores,
+  Dispatcher(const Params& params, uint32_t num_blocks, std::vector<CoreCell*> cores, bool in_clusters,
              std::span<const uint32_t> chosen = {});
   // Fills the cores at `now`, the start of a window.
   void dispatch(Cycle now);

@@ -148,6 +148,7 @@ struct World {
   // each direction. With zeros the launch has no blocks, and each warp is a block of its own (ray
   // generation); `layout` says which threads it has.
   std::array<uint32_t, 3> block_size{0, 0, 0};
+  bool in_clusters = false;                       // each block is a cluster of its own, which only costs time
   std::shared_ptr<const WarpLayout> layout;       // null: linear
   uint32_t shared_bytes = 0;                      // shared memory of a block
   uint32_t dynamic_shared_bytes = 0;              // the part of it that the launch asked for, not the program

@@ -86,6 +86,7 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
   }
   check_launch_size(grid.grid, grid.block, SourceLocation{name});
   exec::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
+  world.in_clusters = kernel_.in_clusters;
 }
 
 void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {

@@ -150,7 +150,7 @@ Cycle TimingMachine::run(const LaunchWatch& watch, LaunchPart* part) {
   for (auto& core : cores_) cores.push_back(core.get());
   const exec::Executor executor(world_);
   const std::span<const uint32_t> blocks = part ? part->blocks() : std::span<const uint32_t>{};
-  core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores, blocks);
+  core::Dispatcher dispatcher(params_.core, executor.num_blocks(), cores, world_.in_clusters, blocks);
   const exec::Fault* fault = nullptr;
   progress_.num_warps = part ? blocks.size() * executor.warps_per_block() : executor.num_warps();
   const auto note_progress = [&](Cycle now) {

@@ -36,6 +36,9 @@ KernelLowering::KernelLowering(const Module& module, const Function& entry, cons
 }
 
 VirtualProgram KernelLowering::run() {
+  if (const auto& c = entry_.required_cluster; c && uint64_t{(*c)[0]} * (*c)[1] * (*c)[2] != 1)
+    no_support(entry_.position, fmt::format("a cluster of {} x {} x {} blocks (.reqnctapercluster)", (*c)[0],
+                                            (*c)[1], (*c)[2]));
   scopes_.push_back({{}, {}, true});
   place_parameters();
   place_variables();

@@ -136,17 +136,24 @@ class Parser {
     if (!in_.is(Token::Kind::DotWord)) in_.fail("'{'");
     const std::string directive = in_.next().text;
     if (directive == "maxntid" || directive == "reqntid") {
-      std::array<uint32_t, 3> size{1, 1, 1};
-      for (uint32_t& axis : size) {
-        axis = uint32_t(in_.constant("a number of threads"));
-        if (!in_.accept(",")) break;
-      }
-      (directive == "maxntid" ? f.largest_block : f.required_block) = size;
+      (directive == "maxntid" ? f.largest_block : f.required_block) = size("a number of threads");
+    } else if (directive == "reqnctapercluster") {
+      f.required_cluster = size("a number of blocks");
     } else if (directive == "pragma") {
       skip_to_semicolon();
     } else {  // These are hints: .minnctapersm 2, .maxnreg 64, .noreturn, .abi_preserve 8 ...
       while (in_.is(Token::Kind::Integer) || in_.is_mark(",")) in_.next();
     }
+  }
+
+  // Reads up to three numbers. Those that are left out are 1.
+  std::array<uint32_t, 3> size(const char* what) {
+    std::array<uint32_t, 3> axes{1, 1, 1};
+    for (uint32_t& axis : axes) {
+      axis = uint32_t(in_.constant(what));
+      if (!in_.accept(",")) break;
+    }
+    return axes;
   }
 
   std::vector<Declaration> parameters() {

@@ -46,6 +46,7 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
   Kernel kernel;
   kernel.required_block = function.required_block;
   kernel.largest_block = function.largest_block;
+  kernel.in_clusters = function.required_cluster.has_value();
   Diagnostics errors, unsupported;
   ptx::KernelLowering lowering(module, function, options, kernel, errors, unsupported);
   VirtualProgram program = lowering.run();

@@ -46,6 +46,9 @@ struct Kernel {
   std::vector<ModuleVariable> variables;
   uint32_t constant_bank_bytes = isa::kConstantBankBytes;                // the minimum that the kernel needs
   std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
+  // Each block is a cluster: .reqnctapercluster 1, which nvcc writes for __block_size__ and
+  // __cluster_dims__(1).
+  bool in_clusters = false;
 };
 
 struct PtxOptions {

@@ -98,6 +98,7 @@ struct Function {
   std::vector<Declaration> results, parameters;
   std::vector<Statement> body;
   std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
+  std::optional<std::array<uint32_t, 3>> required_cluster;               // .reqnctapercluster
   TextPosition position;
 };
 

@@ -155,6 +155,7 @@ GpuParams cut(const GpuParams& gpu, uint32_t scale, double l2_share) {
   const double sets = l2_share * double(gpu.memory.l2.slice_size * scale) / double(set);
   part.memory.l2.slice_size = std::max<uint64_t>(1, uint64_t(std::llround(sets))) * set;
   part.core.grid_interval *= scale;
+  part.core.cluster_interval *= scale;
   return part;
 }
 

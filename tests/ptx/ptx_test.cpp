@@ -413,16 +413,3 @@ TEST_CASE("the example kernels give the same on both machines, and what they sho
     CHECK(saxpy.read<float>(1, 1000) == z);
   }
 }
-
-TEST_CASE("blocks of a grid start at their interval, whatever core they are on") {
-  Launcher k(storing("mov.u32 %out, 1;\n"), "test.ptx", "k");
-  k.buffer(std::vector<uint32_t>(32));
-  const auto cycles = [&](double interval) {
-    pipeline::GpuParams gpu;
-    gpu.core.block_interval = 0;
-    gpu.core.grid_interval = interval;
-    return k.run_timing({{33, 1, 1}, {32, 1, 1}, 0}, gpu);
-  };
-  // The last block starts long after the first has filled the caches.
-  CHECK(cycles(40.5) == cycles(20.25) + 648);  // 32 times 20.25
-}

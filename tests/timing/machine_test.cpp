@@ -27,6 +27,7 @@ Params all_on(Params params) {
   params.issue = PolicyChoice<IssueScheduler>("cggty");
   params.block_interval = 1;
   params.grid_interval = 1.5;
+  params.refill_latency = 7;
   params.lsu.merged_lines = 4;
   params.write_order = false;
   params.register_file = {2, 3};

@@ -159,7 +159,7 @@ struct OneCore {
     if (profile) cell->start_profile();
     EngineLoop engine({options_.window, options_.no_skip, 100'000});
     engine.add(*cell);
-    Dispatcher dispatcher(params_, exec::Executor(world).num_blocks(), {cell.get()});
+    Dispatcher dispatcher(params_, exec::Executor(world).num_blocks(), {cell.get()}, world.in_clusters);
     engine.run([&](Cycle now) {
       if (cell->fault()) return EngineLoop::Next::Stop;
       dispatcher.dispatch(now);
