@@ -3,9 +3,11 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/check.h"
+#include "base/types.h"
 #include "exec/block.h"
 
 namespace glint::core {
@@ -31,14 +33,19 @@ class BlockSlots {
     ++num_taken_;
     return *free;
   }
-  // Notes that one warp of the block has left its warp slot.
-  void leave(BlockSlot& slot) {
-    if (--slot.warps == 0) --num_taken_;
+  // Notes that one warp of the block leaves its warp slot in cycle `now`.
+  void leave(BlockSlot& slot, Cycle now) {
+    if (--slot.warps > 0) return;
+    --num_taken_;
+    last_end_ = now + 1;
   }
+  // Returns the first cycle in which the slot that became free last was free.
+  std::optional<Cycle> last_end() const { return last_end_; }
 
  private:
   std::vector<BlockSlot> slots_;
   uint32_t num_taken_ = 0;
+  std::optional<Cycle> last_end_;
 };
 
 }  // namespace glint::core

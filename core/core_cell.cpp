@@ -90,11 +90,10 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   GLINT_CHECK(has_room(), "no room for a block");
   active_until_ = std::max(active_until_, now);
   if (counts_.stats.blocks.value() > 0) ready = std::max(ready, block_start_ + params_.block_interval);
-  if (last_block_end_) ready = std::max(ready, *last_block_end_ + params_.refill_latency);
+  if (const auto end = warps_.blocks().last_end()) ready = std::max(ready, *end + params_.refill_latency);
   block_start_ = ready;
   const uint32_t num_warps = executor_.warps_per_block();
   BlockSlot& home = warps_.blocks().take(num_warps);
-  blocks_ = warps_.blocks().num_taken();
   executor_.start(home.block, block_index);
   ++counts_.stats.blocks;
   for (uint32_t w = 0; w < num_warps; ++w) launch_warp(home, w, ready, now);
@@ -164,8 +163,6 @@ void CoreCell::step(Cycle now) {
     rays_.let_return(now);
   if (warps_.num_resident() != residents_ || num_held() != held_) [[unlikely]] {
     count_residents(now);
-    if (warps_.blocks().num_taken() < blocks_) last_block_end_ = now + 1;
-    blocks_ = warps_.blocks().num_taken();
     if (residents_ == 0) become_empty(now + 1);
   }
 }

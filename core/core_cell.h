@@ -183,11 +183,9 @@ class CoreCell final : public Cell {
   BarrierUnit barriers_;
   const std::unique_ptr<ReorderUnit> reorder_;  // null when threads stay in their lanes
   IssueStage issue_;
-  exec::Seat seat_;                      // the seat of the warp launched last
-  Cycle block_start_ = 0;                // when the first instructions of the block launched last can issue
-  std::optional<Cycle> last_block_end_;  // when a block's place became free last
-  uint32_t blocks_ = 0;                  // blocks that have places
-  uint32_t residents_ = 0, held_ = 0;    // resident warps and held places since cycle residents_since_
+  exec::Seat seat_;                    // the seat of the warp launched last
+  Cycle block_start_ = 0;              // when the first instructions of the block launched last can issue
+  uint32_t residents_ = 0, held_ = 0;  // resident warps and held places since cycle residents_since_
   Cycle residents_since_ = 0;
   Cycle active_until_ = 0;  // nothing has happened in this cycle or after it
   IntervalSampler sampler_;

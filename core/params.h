@@ -324,8 +324,7 @@ struct Params {
               0.0, 10'000.0),
         param(&Params::cluster_interval, "cluster_interval", "cycle",
               "Cycles from the start of a block to the start of the next on any core, in steps of 1/16, when "
-              "the kernel has clusters of one block (PTX's .reqnctapercluster). 0: they are those of "
-              "grid_interval.",
+              "each block is a cluster (PTX's .reqnctapercluster 1). 0: such blocks start as others do.",
               0.0, 10'000.0),
         param(&Params::refill_latency, "refill_latency", "cycle",
               "Cycles from the end of a block to the first instruction of the block that takes its place.", 0,

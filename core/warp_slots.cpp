@@ -64,7 +64,7 @@ void WarpSlots::free(uint32_t slot, Cycle now) {
   WarpSlot& at = slots_[slot];
   at.scheduler->remove(at.local);
   --num_resident_;
-  blocks_.leave(*at.home);
+  blocks_.leave(*at.home, now);
   observers_.tell([&](CoreObserver& observer) { observer.end_warp(now, slot); });
 }
 

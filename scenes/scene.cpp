@@ -17,7 +17,6 @@
 #include "scenes/instancing.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/motions/built_in.h"
-#include "scenes/scene_hash.h"
 
 namespace glint::scenes {
 namespace {
@@ -193,10 +192,6 @@ uint64_t Scene::procedurals() const {
   uint64_t count = 0;
   for (const Model& model : models) count += model.is_procedural();
   return count;
-}
-
-uint64_t Scene::hash() const {
-  return scene_hash(*this, 1);
 }
 
 std::vector<SceneInfo> scene_list() {

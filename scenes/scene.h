@@ -107,7 +107,9 @@ struct Scene {
   uint64_t stored_triangles() const;  // triangles of the models, each counted once
   double fraction() const;            // share of the original's triangles; 1 when there is no original
   uint64_t procedurals() const;
-  uint64_t hash() const;  // hash of everything that reaches a shader, stable across runs and machines
+  // Returns a hash of everything that reaches a shader, on up to `threads` threads of the host. It is the
+  // same at any number of threads, in every run and on every machine.
+  uint64_t hash(uint32_t threads = 1) const;
 };
 
 // Returns Scene::instances, or each model once when the scene lists no instances.

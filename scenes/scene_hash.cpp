@@ -1,12 +1,11 @@
 // Hashes the parts of a scene on several threads, and the hashes of the parts in the scene's order.
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/scene_hash.h"
-
 #include <algorithm>
 #include <bit>
 #include <vector>
 
 #include "base/parallel_ranges.h"
+#include "scenes/scene.h"
 
 namespace glint::scenes {
 namespace {
@@ -100,34 +99,34 @@ void add(ContentHash& hash, const Camera& c) {
 
 }  // namespace
 
-uint64_t scene_hash(const Scene& scene, uint32_t threads) {
+uint64_t Scene::hash(uint32_t threads) const {
   ContentHash content;
   std::vector<Part> parts;
-  content.add(uint64_t{scene.models.size()});
-  for (const Model& model : scene.models) {
+  content.add(uint64_t{models.size()});
+  for (const Model& model : models) {
     add(content, model);
     cut(parts, {.vertices = &model}, model.vertices.size());
     cut(parts, {.indices = &model}, model.indices.size());
   }
-  for (const Instance& instance : scene.instances) {
+  for (const Instance& instance : instances) {
     content.add(uint64_t{instance.model});
     content.add(instance.to_world);
   }
-  content.add(uint64_t{scene.materials.size()});
-  for (const Material& m : scene.materials) {
+  content.add(uint64_t{materials.size()});
+  for (const Material& m : materials) {
     content.add(m.diffuse);
     content.add(uint64_t(uint32_t(m.texture)));
     content.add(m.fuzziness);
     content.add(m.refraction_index);
     content.add(uint64_t(m.model));
   }
-  content.add(uint64_t{scene.textures.size()});
-  for (const Texture& texture : scene.textures) {
+  content.add(uint64_t{textures.size()});
+  for (const Texture& texture : textures) {
     add(content, texture);
     cut(parts, {.texels = &texture}, texture.rgba.size());
   }
-  add(content, scene.camera);
-  content.add(uint64_t{scene.alpha_test});
+  add(content, camera);
+  content.add(uint64_t{alpha_test});
 
   std::vector<uint64_t> hashes(parts.size());
   parallel_ranges(parts.size(), 4, threads, [&](size_t begin, size_t end) {

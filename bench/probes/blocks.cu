@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // nvcc -arch=sm_90 -O3 blocks.cu -o blocks && ncu --clock-control none --csv --page raw --print-units base \
-//     --metrics sm__cycles_elapsed.max,sm__cycles_active.avg,sm__warps_active.avg.per_cycle_active ./blocks > blocks.ncu.csv
+//     --metrics sm__cycles_elapsed.max,launch__grid_size,launch__block_size ./blocks
+// blocks_h100.csv and blocks_h200.csv have the kernel, its wait and these three numbers of each row that Nsight Compute printed.
 // The template's arguments are the cycles that each block waits, and whether the launch has clusters of one block, as nvcc's __block_size__ makes
 // them. A wait of 0 is an empty kernel.
 #include <cstdio>

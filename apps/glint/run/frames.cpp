@@ -24,7 +24,6 @@
 #include "pipeline/structure_stats.h"
 #include "report/files/run_directory.h"
 #include "scenes/camera_path.h"
-#include "scenes/scene_hash.h"
 #include "setup/recorded_launch.h"
 
 namespace glint::app {
@@ -150,7 +149,7 @@ class FrameRun {
     report::RunInfo info = info_;
     info.frames.clear(), info.saved.clear(), info.outputs.clear();
     info.moment = {frame, info_.sequence->seconds_of(frame)};
-    info.scene_hash = scenes::scene_hash(job_.scene, job_.threads);
+    info.scene_hash = job_.scene.hash(job_.threads);
     info.structures = structure_info(world_->structures);
     return info;
   }

@@ -22,7 +22,6 @@
 #include "report/files/run_directory.h"
 #include "report/terminal/progress.h"
 #include "scenes/import/scene_file.h"
-#include "scenes/scene_hash.h"
 #include "setup/recorded_launch.h"
 
 namespace glint::app {
@@ -175,7 +174,7 @@ report::RunInfo describe_scene(const Session& session, const SceneOptions& optio
   info.scene_form = job.scene.form;
   if (scenes::names_scene_file(options.scene)) info.scene_file = options.scene;
   info.scene_note = job.scene.note;
-  info.scene_hash = scenes::scene_hash(job.scene, job.threads);
+  info.scene_hash = job.scene.hash(job.threads);
   info.scene_triangles = job.scene.triangles();
   info.scene_fraction = job.scene.fraction();
   info.shader = options.shader;

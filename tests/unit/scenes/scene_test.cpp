@@ -13,7 +13,6 @@
 #include "scenes/generate/distance_field.h"
 #include "scenes/import/obj_loader.h"
 #include "scenes/mesh.h"
-#include "scenes/scene_hash.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_data.h"
 
@@ -161,7 +160,7 @@ TEST_CASE("a scene's hash depends on its last index and texel and not on the thr
   Scene scene = load_scene("BUNNY", {});
   scene.textures.push_back({"odd", 3, 1, std::vector<uint8_t>(12, 7)});
   const uint64_t before = scene.hash();
-  for (const uint32_t threads : {2u, 3u, 8u}) CHECK(scene_hash(scene, threads) == before);
+  for (const uint32_t threads : {2u, 3u, 8u}) CHECK(scene.hash(threads) == before);
   scene.textures.back().rgba[11] = 8;
   const uint64_t other_texel = scene.hash();
   CHECK(other_texel != before);
