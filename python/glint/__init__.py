@@ -13,6 +13,7 @@ from .lazy import public
 
 # These are the public names of each module. A module is imported when one of its names is first asked for.
 _NAMES = {
+    "axes_sweep": "sweep",
     "characterization": "Characterization",
     "collection": "Bench Runs Sweep",
     "comparison": "Change compare speedup",
@@ -20,7 +21,7 @@ _NAMES = {
     "errors": "CommandFailed GlintError IncompleteRun MissingFile MissingPackage SchemaError UnknownName",
     "images": "read_image",
     "labelling": "labels",
-    "launch": "find_glint run sweep",
+    "launch": "find_glint run",
     "plot": "plot",  # the module itself, whose functions import matplotlib
     "run_directory": "Estimate Facts Run",
     "statistics": "Histogram Stat Stats",

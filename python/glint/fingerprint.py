@@ -5,10 +5,7 @@ from __future__ import annotations
 
 import pathlib
 import re
-import subprocess
-from typing import Any, Mapping
-
-from .errors import CommandFailed
+from typing import Any
 
 _NAMED = re.compile(rb'"([^"\n]{1,255})"|([\w./+-]+\.\w+)')  # files that a text may name: quoted, or a word with an ending
 _SCANNED = 16 << 20  # bytes; only texts name other files, and texts are smaller
@@ -18,27 +15,13 @@ class Fingerprints:
     """Makes texts that differ when something that a run reads differs. Each file is read once."""
 
     def __init__(self, program: str):
-        self._program = program
         self._known: dict[str, str] = {"program": file_hash(pathlib.Path(program))}
 
-    def of(self, workload: str, config: str, settings: Mapping[str, str]) -> str:
-        """Returns the fingerprint of a run. Raises CommandFailed when the program refuses the configuration."""
-        keys = f"config {config} {sorted(settings.items())}"
-        if keys not in self._known:
-            self._known[keys] = self._configuration(config, settings)
+    def of(self, workload: str, config: str) -> str:
+        """Returns the fingerprint of a run. `config` is what `glint describe --points` calls the values of its configuration."""
         if workload not in self._known:
             self._known[workload] = " ".join(f"{path.name}:{file_hash(path)}" for path in files_of(pathlib.Path(workload)))
-        text = " ".join((self._known["program"], self._known[keys], self._known[workload]))
-        return _sum(text)
-
-    def _configuration(self, config: str, settings: Mapping[str, str]) -> str:
-        words = [self._program, "describe", "--config", config]
-        for key, value in settings.items():
-            words += ["--set", f"{key}={value}"]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise CommandFailed(f"{' '.join(words)}\nended with exit code {done.returncode}: {done.stderr.strip()}", done.returncode, done.stderr)
-        return _sum(done.stdout)
+        return _sum(" ".join((self._known["program"], config, self._known[workload])))
 
 
 def files_of(path: pathlib.Path) -> list[pathlib.Path]:

@@ -7,8 +7,10 @@ import json
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 import python_case
 from python_case import GLINT, ROOT, SMALL, PythonTest
@@ -107,6 +109,64 @@ class Sweeps(PythonTest):
         with self.assertWarnsRegex(UserWarning, "memory.dram.simple.latency.*changed nothing"):
             self.glint.sweep("WKND_SH", {"memory.dram.simple.latency": [50.0, 100.0]}, out=self.folder / "idle", set={"memory.dram.model": "banked"}, **TINY)
         self.assertRaisesRegex(TypeError, "leave the key out", self.glint.run, "WKND_SH", out=self.folder / "none", set={"core.warps": None}, **TINY)
+
+    def test_all_points_are_checked_before_the_first_one_runs(self):
+        with self.assertRaises(self.glint.CommandFailed) as caught:
+            self.glint.sweep("WKND_SH", {"core.warps": [8, 0, 16, 1000]}, out=self.folder / "wrong", **TINY)
+        self.assertEqual(caught.exception.code, 2)
+        for words in ("2 of 4 points are wrong, so nothing was run", "WKND_SH-core.warps=0", "WKND_SH-core.warps=1000", "expected 1 to"):
+            self.assertIn(words, str(caught.exception))
+        self.assertFalse((self.folder / "wrong").exists())
+        self.assertRaisesRegex(self.glint.GlintError, "a whole number from 0", self.glint.sweep, "WKND_SH", {"core.warps": [8]}, out=self.folder / "wrong", workers=-1, **TINY)
+
+    def stand_in(self, name, lines):
+        """Returns a program that does some lines of shell before each run."""
+        path = self.folder / f"{name}.sh"
+        path.write_text(f'#!/bin/sh\n[ "$1" = run ] || exec {GLINT} "$@"\n{lines}\nexec {GLINT} "$@"\n')
+        path.chmod(0o755)
+        return path
+
+    def test_the_number_of_workers_changes_no_result(self):
+        found = {}
+        for workers in (1, 3):
+            sweep = self.glint.sweep("WKND_SH", {"rt.warps": [1, 2, 4], "core.warps": [8, 16]}, out=self.folder / f"by{workers}", workers=workers, **TINY)
+            found[workers] = [(name, run.cycles, (self.folder / f"by{workers}" / name / "stats.json").read_bytes()) for name, run in sweep.items()]
+        self.assertEqual(len(found[1]), 6)
+        self.assertEqual(found[1], found[3])
+
+    def test_points_run_at_the_same_time_and_within_their_memory(self):
+        # Each run waits until another one has begun, or ends after a while.
+        both = self.stand_in("both", f'touch {self.folder}/began.$$; for i in $(seq 100); do [ $(ls {self.folder}/began.* | wc -l) -ge 2 ] && break; sleep 0.1; done; '
+                                     f'[ $(ls {self.folder}/began.* | wc -l) -ge 2 ] || exit 9')
+        axes = {"rt.warps": [1, 2]}
+        self.assertEqual(len(self.glint.sweep("WKND_SH", axes, out=self.folder / "both", workers=2, **{**TINY, "glint": both})), 2)
+        alone = self.stand_in("alone", f"mkdir {self.folder}/lock || exit 9; sleep 0.2; rmdir {self.folder}/lock")
+        self.assertEqual(len(self.glint.sweep("WKND_SH", axes, out=self.folder / "alone", workers=2, memory=1e-6, **{**TINY, "glint": alone})), 2)
+
+    def test_a_point_that_fails_ends_the_sweep_and_what_is_done_is_kept(self):
+        failing = self.stand_in("failing", "case \"$*\" in *rt.warps=2*) echo half; echo 'error: no luck' >&2; exit 3 ;; esac")
+        axes = {"rt.warps": [1, 2, 4, 8]}
+        with self.assertRaises(self.glint.CommandFailed) as caught:
+            self.glint.sweep("WKND_SH", axes, out=self.folder / "failing", workers=1, **{**TINY, "glint": failing})
+        self.assertEqual((caught.exception.code, caught.exception.output), (3, "error: no luck\n"))
+        self.assertEqual(list(self.glint.Sweep(self.folder / "failing")), ["WKND_SH-rt.warps=1"])
+        lines = []
+        good = self.stand_in("failing", "")
+        self.assertEqual(len(self.glint.sweep("WKND_SH", axes, out=self.folder / "failing", progress=lines.append, **{**TINY, "glint": good})), 4)
+
+    def test_ctrl_c_ends_all_points(self):
+        mark = self.folder / "marks"
+        mark.mkdir()
+        slow = self.stand_in("slow", f"touch {mark}/$$; exec sleep 1000")
+        code = "import sys, glint; glint.sweep('WKND_SH', {'rt.warps': [1, 2, 4]}, out=sys.argv[1], workers=2, size=(8, 8), spp=1, glint=sys.argv[2])"
+        child = subprocess.Popen([sys.executable, "-c", code, self.folder / "stopped", slow], stderr=subprocess.PIPE, text=True)
+        while len(list(mark.iterdir())) < 2:
+            time.sleep(0.05)
+        child.send_signal(signal.SIGINT)
+        self.assertIn("KeyboardInterrupt", child.communicate(timeout=60)[1])
+        for one in mark.iterdir():
+            self.assertFalse(pathlib.Path("/proc", one.name).exists())
+        self.assertEqual(len(list(mark.iterdir())), 2)
 
     def test_texts_in_the_place_of_lists_are_refused(self):
         self.assertRaisesRegex(TypeError, r"\['--heat'\]", self.glint.run, "WKND_SH", out=self.folder / "text", options="--heat", **TINY)

@@ -23,14 +23,14 @@ class Constraint:
         self.text = text
         try:
             self._tree = ast.parse(text.strip(), mode="eval").body
-        except (SyntaxError, ValueError, RecursionError, AttributeError) as error:
+        except (SyntaxError, ValueError, RecursionError, MemoryError, AttributeError) as error:
             raise SweepError(f"the constraint {text!r} cannot be read: {error}") from error
 
     def holds(self, values: Mapping[str, Any]) -> bool:
         """Returns whether a point keeps it. Raises SweepError for a name that is no key, and for what cannot be computed."""
         try:
             return bool(self._value(self._tree, values))
-        except (TypeError, ValueError, ArithmeticError) as error:
+        except (TypeError, ValueError, ArithmeticError, RecursionError, MemoryError) as error:
             raise SweepError(f"the constraint {self.text!r} cannot be computed: {error}") from error
 
     def _value(self, node: ast.AST, values: Mapping[str, Any]) -> Any:

@@ -10,7 +10,7 @@ import tomllib
 from typing import Any, Mapping
 
 from ..documents import flat
-from ..errors import SweepError
+from ..errors import MissingPackage, SweepError
 from ..patterns import near
 from .constraints import Constraint
 from .design import METHODS, check_values, number_of_points, points_of
@@ -21,6 +21,7 @@ _KEYS = ("name", "store", "workloads", "configs", "seeds", "replicas", "run", "s
 _OWN = {"out": "the store has a folder for each point", "config": "use `configs`", "set": "use [set] and [[design]]", "seed": "use `seeds` or `replicas`", "stats": "use `stats`",
         "threads": "use `threads`", "json": "the results go to the store", "progress-fd": "it is Glint's own"}
 _FILES = ("launch", "shader-dir", "assets", "include")  # options of [run] that name files
+ENGINES = ("local", "slurm", "dask")
 RETRIES = {"crash": 1, "timeout": 0, "memory": 1, "lost": 2}
 _MOST_POINTS = 4_000_000  # Choice: the list of points of such a sweep takes some 12 GB of memory (docs/scale.md).
 _DESIGN = ("method", "points", "seed", "keys", "list")
@@ -63,8 +64,8 @@ class Definition:
             what, _, where = str(error).partition(" (at ")
             line = re.match(r"line (\d+)", where)
             raise SweepError(f"{path}:{line[1] if line else max(1, len(text.splitlines()))}: the file is no TOML: {what}") from error
-        except SweepError as error:
-            raise SweepError(places.told(str(error))) from error
+        except (SweepError, MissingPackage) as error:
+            raise type(error)(places.told(str(error))) from error
         made.places = places
         return made
 
@@ -76,6 +77,7 @@ class Definition:
     def of(tree: Mapping[str, Any], folder: str | pathlib.Path = ".") -> "Definition":
         """Returns the sweep of a dictionary that has the form of sweep.toml. Paths in it count from `folder`."""
         _known(tree, _KEYS, "the sweep")
+        _check_texts(tree)
         folder = pathlib.Path(folder).resolve()
         limits, retry = _table(tree, "limits"), _table(tree, "retry")
         _known(limits, ("timeout", "memory"), "[limits]")
@@ -88,9 +90,11 @@ class Definition:
             stats=_word(tree, "stats", ("compact", "full"), "compact"), report=_flag(tree, "report"), objectives=_objectives(_texts(tree, "objectives", ["cycles"])),
             timeout=seconds_of(limits["timeout"]) if "timeout" in limits else None, memory_limit=bytes_of(limits["memory"]) if "memory" in limits else None,
             retry={**RETRIES, **{kind: _whole(count, f"[retry] {kind}", 0) for kind, count in retry.items()}},
-            engine=_word(tree, "engine", ("local", "slurm", "dask"), "local"), threads=_whole(tree.get("threads", 1), "threads", 1), slurm=_slurm(_table(tree, "slurm")),
-            dask=_chunked(_table(tree, "dask"), "dask"), store=str((folder / tree["store"]).resolve()) if "store" in tree else None)
+            engine=_word(tree, "engine", ENGINES, "local"), threads=_whole(tree.get("threads", 1), "threads", 1), slurm=_slurm(_table(tree, "slurm")),
+            dask=_chunked(_table(tree, "dask"), "dask"), store=_store(tree, folder))
         _known(made.dask, ("scheduler", "chunk"), "[dask]")
+        if not isinstance(made.dask.get("scheduler", ""), str):
+            raise SweepError(f"`[dask] scheduler` is {made.dask['scheduler']!r}: a text is needed, such as \"tcp://host:8786\"")
         if made.report and made.stats != "full":
             raise SweepError("`report` needs stats = \"full\": a report shows every unit, and compact statistics have totals alone")
         for text in made.constraints:
@@ -174,6 +178,22 @@ def _texts(tree: Mapping[str, Any], key: str, otherwise: list[str] | None) -> li
     return _different([str(one) for one in given], key)
 
 
+def _check_texts(tree: Any, key: str = "") -> None:
+    """Raises SweepError for a text that no command line can carry."""
+    if isinstance(tree, str) and "\0" in tree:
+        raise SweepError(f"'{key}' has a text with a zero byte in it: {tree!r}")
+    for name, value in tree.items() if isinstance(tree, Mapping) else ((key, one) for one in tree) if isinstance(tree, (list, tuple)) else ():
+        _check_texts(name, name)
+        _check_texts(value, name)
+
+
+def _store(tree: Mapping[str, Any], folder: pathlib.Path) -> str | None:
+    given = tree.get("store")
+    if given is not None and not isinstance(given, (str, pathlib.PurePath)):
+        raise SweepError(f"`store` is {given!r}: the path of a folder is needed")
+    return None if given is None else str((folder / given).resolve())
+
+
 def _different(values: list[Any], key: str) -> list[Any]:
     check_values(key, values)
     return values
@@ -241,6 +261,8 @@ def _options(table: dict[str, Any], folder: pathlib.Path) -> tuple[list[str], li
 
 def _designs(given: Any) -> list[dict[str, Any]]:
     out = []
+    if not isinstance(given, (list, tuple, Mapping)):
+        raise SweepError(f"`design` is {given!r}: a table [[design]] is needed")
     for one in [given] if isinstance(given, Mapping) else given:
         if not isinstance(one, Mapping):
             raise SweepError(f"a design is {one!r}: a table [[design]] is needed")
@@ -251,6 +273,8 @@ def _designs(given: Any) -> list[dict[str, Any]]:
             raise SweepError(f"the method is {design['method']!r}: it is one of {', '.join(METHODS)}")
         if "points" in design:
             _whole(design["points"], "points", 1)
+            if design["method"] in ("grid", "list"):
+                raise SweepError(f"the method \"{design['method']}\" takes no `points`, because it has all of its points: leave it out, or choose a `method` that samples")
         _whole(design.get("seed", 1), "seed", 0)
         if not isinstance(design.get("keys", {}), Mapping):
             raise SweepError("[design.keys] is not a table of keys")

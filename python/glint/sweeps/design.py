@@ -40,8 +40,12 @@ class Axis:
             value = given.get(name)
             if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value)):
                 raise SweepError(f"'{self.key}' has {name} = {value!r}, which is not a number")
-        whole = all(isinstance(value, int) for value in (self.low, self.high, self.step or 1))
-        self.integer = bool(given.get("integer", whole))
+        whole = all(value == int(value) for value in (self.low, self.high, self.step or 1))
+        self.integer = given.get("integer", all(isinstance(value, int) for value in (self.low, self.high, self.step or 1)))
+        if not isinstance(self.integer, bool):
+            raise SweepError(f"'{self.key}' has integer = {self.integer!r}: it is true or false")
+        if self.integer and not whole:
+            raise SweepError(f"'{self.key}' has integer = true, and one of low, high and step is no whole number")
         if self.low >= self.high:
             raise SweepError(f"'{self.key}' has low = {self.low}, which is not below high = {self.high}")
         if self.step is not None and self.step <= 0:
@@ -50,6 +54,10 @@ class Axis:
             raise SweepError(f"'{self.key}' has scale = {self.scale!r}: it is \"linear\", \"log\" or \"power2\"")
         if self.scale != "linear" and self.low <= 0:
             raise SweepError(f"'{self.key}' has low = {self.low}: a range with scale = \"{self.scale}\" begins above 0")
+        if self.scale == "power2" and self.step is not None:
+            raise SweepError(f"'{self.key}' has a step: a range with scale = \"power2\" has the powers of two, and no step")
+        if self.scale == "power2" and not self.all_values():
+            raise SweepError(f"'{self.key}' has no power of two from low = {self.low} to high = {self.high}")
 
     def all_values(self) -> list[Any]:
         """Returns every value. Raises SweepError for a range without a step."""
@@ -59,25 +67,34 @@ class Axis:
             return [2**i for i in range(math.ceil(math.log2(self.low)), math.floor(math.log2(self.high)) + 1)]
         if self.step is None:
             raise SweepError(f"'{self.key}' is a range without a step: a grid needs one, or scale = \"power2\"")
-        count = math.floor((self.high - self.low) / self.step + 1e-9)
-        return [self._plain(self.low + i * self.step) for i in range(count + 1)]
+        return [self._at_step(i) for i in range(self._num_steps() + 1)]
 
     def count(self) -> int:
         """Returns the number of all_values(), without making them."""
         if self.values is None and self.scale != "power2" and self.step is not None:
-            return math.floor((self.high - self.low) / self.step + 1e-9) + 1
+            return self._num_steps() + 1
         return len(self.all_values())
 
     def at(self, part: float) -> Any:
         """Returns the value at a part from 0 up to 1 of the axis."""
-        if self.values is not None or self.scale == "power2" or (self.step is not None and self.scale == "linear"):
+        if self.values is not None or self.scale == "power2":
             values = self.all_values()
             return values[min(int(part * len(values)), len(values) - 1)]
-        if self.integer and self.scale == "linear":
-            return min(self.low + int(part * (self.high - self.low + 1)), self.high)
         if self.scale == "log":
-            return self._plain(math.exp(math.log(self.low) + part * (math.log(self.high) - math.log(self.low))))
+            value = math.exp(math.log(self.low) + part * (math.log(self.high) - math.log(self.low)))
+            return self._plain(value) if self.step is None else self._at_step(min(round((value - self.low) / self.step), self._num_steps()))
+        if self.step is not None:
+            return self._at_step(min(int(part * (self._num_steps() + 1)), self._num_steps()))
+        if self.integer:
+            return min(self.low + int(part * (self.high - self.low + 1)), self.high)
         return self._plain(self.low + part * (self.high - self.low))
+
+    def _num_steps(self) -> int:
+        """Returns how many steps lie between the ends of a range."""
+        return math.floor((self.high - self.low) / self.step + 1e-9)
+
+    def _at_step(self, number: int) -> Any:
+        return self._plain(self.low + number * self.step)
 
     def _plain(self, value: float) -> Any:
         return round(value) if self.integer else float(f"{value:.12g}")
@@ -140,18 +157,21 @@ def _latin_hypercube(dimensions: int, count: int, seed: int) -> list[list[float]
     return [list(row) for row in zip(*columns)]
 
 
-def _sobol(dimensions: int, count: int, seed: int) -> list[list[float]]:
-    qmc = require("scipy.stats", "the method \"sobol\"").qmc
+def _sobol(dimensions: int, count: int, seed: int, method: str = "sobol") -> list[list[float]]:
+    qmc = require("scipy.stats", f"the method \"{method}\"").qmc
     import warnings
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # It warns of counts that are no powers of two.
-        return [list(map(float, row)) for row in qmc.Sobol(dimensions, scramble=True, seed=seed).random(count)]
+        try:
+            return [list(map(float, row)) for row in qmc.Sobol(dimensions, scramble=True, seed=seed).random(count)]
+        except ValueError as error:
+            raise SweepError(f"the method \"{method}\" cannot give {count} points in {dimensions} dimensions: {error}") from error
 
 
 def _saltelli(dimensions: int, count: int, seed: int) -> list[list[float]]:
     """Returns the rows A, B, AB_1 .. AB_d of each base point, in that order, as Saltelli et al. (2010) describe them."""
     out: list[list[float]] = []
-    for row in _sobol(2 * dimensions, count, seed):
+    for row in _sobol(2 * dimensions, count, seed, "saltelli"):
         a, b = row[:dimensions], row[dimensions:]
         out += [a, b, *([*a[:i], b[i], *a[i + 1:]] for i in range(dimensions))]
     return out

@@ -94,7 +94,7 @@ class Work:
                 except StoreFull:
                     raise
                 except GlintError as error:
-                    kind, message = "crash", f"the run left files that cannot be read: {error}"
+                    kind, message = "crash", f"the run has ended, and its files cannot be kept: {error}"
             attempts.append({"kind": kind, "exit": ended.code, "message": message, "seconds": round(ended.seconds, 3), "peak_bytes": ended.peak_bytes})
             if sum(one["kind"] == kind for one in attempts) > self.retry.get(kind, 0):
                 break
@@ -120,13 +120,18 @@ class Work:
         files = {"run.zip": _packed(folder / "run", folder / "run.zip")}
         if self.report:
             files["report.html"] = folder / "report.html"
-            subprocess.run([self.program, "report", str(folder / "run"), "-o", str(files["report.html"])], capture_output=True, check=True, env=self._environment())
+            self._make_report(folder / "run", files["report.html"])
         record = {"schema": SCHEMA, **_description(point), "program": self.program_hash, "glint": [run.info["version"], run.info["git"]],
                   "partial": ended.code == _PARTIAL, "metrics": _numbers(run),
                   "cost": {"seconds": round(ended.seconds, 4), "peak_bytes": ended.peak_bytes, "host": socket.gethostname(), "when": _now(), "failed_attempts": attempts},
                   "files": {name: {"bytes": path.stat().st_size, "crc32": f"{zlib.crc32(path.read_bytes()):08x}"} for name, path in files.items()}}
         store.commit(point["id"], files, record)
         return {"id": point["id"], "status": "done", "seconds": ended.seconds, "peak_bytes": ended.peak_bytes}
+
+    def _make_report(self, run: pathlib.Path, page: pathlib.Path) -> None:
+        done = subprocess.run([self.program, "report", str(run), "-o", str(page)], capture_output=True, text=True, check=False, env=self._environment())
+        if done.returncode:
+            raise GlintError(f"`glint report` ended with exit code {done.returncode}: {done.stderr.strip()[-200:]}")
 
 
 def _numbers(run: Run) -> dict[str, float | None]:

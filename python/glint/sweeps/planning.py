@@ -9,7 +9,7 @@ import itertools
 import json
 import os
 import pathlib
-from typing import Any, Iterable
+from typing import Any, Callable, Iterable
 
 from ..errors import SweepError
 from ..fingerprint import file_hash, files_of
@@ -27,14 +27,18 @@ def plan(definition: Definition, program: Program) -> list[dict[str, Any]]:
 
     A point has `index`, `id`, `workload`, `config`, `set` (texts by key), `seed`, `options`, `design`, and the estimates `memory` (bytes) and `weight`.
     """
-    raw = _raw(definition, program)
+    try:
+        raw = _raw(definition, program)
+    except SweepError as error:
+        raise SweepError(definition.told(str(error))) from error
     kept = _within_constraints(definition, program, raw)
     if not kept:
         raise SweepError(definition.told(f"the sweep has no points: its `constraints` leave none of {len(raw)}; widen them, or sweep other values"))
     asked = [{"workload": one["workload"], "config": one["config"], "settings": [f"{key}={value}" for key, value in one["set"].items()], "oracles": definition.oracles,
-              "options": one["options"], "keys": list(one["set"])} for one in kept]
+              "options": [*one["options"], f"--threads={definition.threads}"], "keys": list(one["set"])} for one in kept]
     answers = _answers(program, asked)
-    _refuse(definition, kept, answers)
+    if wrong := refusal([title_of(one) for one in kept], answers, lambda message: f"{definition.places.of(message)}: " if definition.places else ""):
+        raise SweepError(wrong)
     names = _Contents(program)
     points = []
     for index, (one, answer) in enumerate(zip(kept, answers)):
@@ -80,7 +84,7 @@ def _within_constraints(definition: Definition, program: Program, raw: list[dict
         return raw
     constraints = [Constraint(text) for text in definition.constraints]
     asked = [{"workload": definition.workloads[0], "config": config, "oracles": definition.oracles, "all_keys": True} for config in definition.configs]
-    answers = ask(program, asked)[1:]
+    answers = ask(program.path, asked)[1:]
     for config, answer in zip(definition.configs, answers):
         if "error" in answer:
             raise SweepError(definition.told(f"config '{config}': {answer['error']}"))
@@ -113,25 +117,25 @@ def number_of(text: Any) -> Any:
 def _answers(program: Program, asked: list[dict[str, Any]]) -> list[dict[str, Any]]:
     slices = [asked[i:i + _SLICE] for i in range(0, len(asked), _SLICE)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        return [answer for part in pool.map(lambda one: ask(program, one)[1:], slices) for answer in part]
+        return [answer for part in pool.map(lambda one: ask(program.path, one)[1:], slices) for answer in part]
 
 
-def _refuse(definition: Definition, points: list[dict[str, Any]], answers: Iterable[dict[str, Any]]) -> None:
+def refusal(titles: list[str], answers: Iterable[dict[str, Any]], place_of: Callable[[str], str] = lambda message: "") -> str:
+    """Returns what is wrong with points, each of which has a title and an answer of the program, or an empty text. `place_of` gives the place of a message."""
     wrong: dict[str, list[str]] = {}
-    for point, answer in zip(points, answers):
+    for title, answer in zip(titles, answers):
         if "error" in answer:
-            wrong.setdefault(answer["error"], []).append(title_of(point))
+            wrong.setdefault(answer["error"], []).append(title)
     if not wrong:
-        return
+        return ""
     count = sum(map(len, wrong.values()))
-    lines = [f"{count} of {len(points)} points are wrong, so nothing was run:"]
-    for message, titles in list(wrong.items())[:_SHOWN]:
-        more = f" (and {len(titles) - 1} more)" if len(titles) > 1 else ""
-        place = f"{definition.places.of(message)}: " if definition.places else ""
-        lines += [f"  {place}{titles[0]}{more}", *(f"    {line}" for line in message.splitlines())]
+    lines = [f"{count} of {len(titles)} points are wrong, so nothing was run:"]
+    for message, some in list(wrong.items())[:_SHOWN]:
+        more = f" (and {len(some) - 1} more)" if len(some) > 1 else ""
+        lines += [f"  {place_of(message)}{some[0]}{more}", *(f"    {line}" for line in message.splitlines())]
     if len(wrong) > _SHOWN:
         lines.append(f"  ... and {len(wrong) - _SHOWN} other messages")
-    raise SweepError("\n".join(lines))
+    return "\n".join(lines)
 
 
 def title_of(point: dict[str, Any]) -> str:

@@ -6,13 +6,19 @@ from __future__ import annotations
 import os
 import threading
 import time
-from typing import Any, Callable
+from typing import Any, Callable, Protocol
 
-from .execution import Work
 from .store import Store
 
 _BUSY = 0.5  # seconds until a point that somebody else runs is looked at again
 _MARGIN = 1.1  # of a measured peak of memory
+
+
+class Worker(Protocol):
+    """Runs a point (`execution.Work`). The pool itself asks nothing of the store, which may be None where points are kept elsewhere."""
+
+    def run(self, point: dict[str, Any], store: Any, stop: Callable[[], bool]) -> dict[str, Any]:
+        """Returns the `id` and `status` of the point and, when it is done, its `peak_bytes`. It ends soon after `stop` says so."""
 
 
 class LocalPool:
@@ -32,21 +38,44 @@ class LocalPool:
         self._running: dict[str, int] = {}
         self._peaks: dict[Any, int] = {}
         self._error: BaseException | None = None
+        self._interrupted = False
+        self._alive = 0  # threads that have not ended
 
-    def run(self, work: Work, points: list[dict[str, Any]], store: Store, stop: Callable[[], bool], tell: Callable[[dict[str, Any]], None]) -> None:
-        """Runs the points until all have ended or `stop` says so. `tell` hears how each ended."""
+    def run(self, work: Worker, points: list[dict[str, Any]], store: Store | None, stop: Callable[[], bool], tell: Callable[[dict[str, Any]], None]) -> None:
+        """Runs the points until all have ended or `stop` says so. `tell` hears how each ended. When a point raises an error, no other one begins, and the error
+        is raised when those that run have ended."""
         self._queue = sorted(points, key=lambda point: -point["weight"])
-        self._stop = stop
+        self._stop = lambda: self._interrupted or stop()
         threads = [threading.Thread(target=self._work, args=(work, store, tell), daemon=True) for _ in range(min(self.workers, len(points)))]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            while thread.is_alive():
-                thread.join(0.2)  # A signal can only be heard between waits.
+        self._alive = len(threads)
+        try:
+            for thread in threads:
+                thread.start()
+            self._wait()
+        except BaseException:  # such as Ctrl-C, where nobody else hears it
+            self._interrupted = True
+            with self._turn:
+                self._alive -= sum(thread.ident is None for thread in threads)
+            self._wait()
+            raise
         if self._error:
             raise self._error
 
-    def _work(self, work: Work, store: Store, tell: Callable[[dict[str, Any]], None]) -> None:
+    def _wait(self) -> None:
+        """Waits for the end of all threads. Python's Thread.join() takes a thread for ended when a signal interrupts it."""
+        with self._turn:
+            while self._alive:
+                self._turn.wait(0.2)  # A signal can only be heard between waits.
+
+    def _work(self, work: Worker, store: Store | None, tell: Callable[[dict[str, Any]], None]) -> None:
+        try:
+            self._run_points(work, store, tell)
+        finally:
+            with self._turn:
+                self._alive -= 1
+                self._turn.notify_all()
+
+    def _run_points(self, work: Worker, store: Store | None, tell: Callable[[dict[str, Any]], None]) -> None:
         while point := self._take():
             outcome = None
             try:

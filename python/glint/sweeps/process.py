@@ -25,7 +25,8 @@ class Ended:
     by: str = ""  # "timeout" or "stop"
 
 
-def run_process(words: list[str], log: pathlib.Path, timeout: float | None, memory: int | None, stop: Callable[[], bool], environment: dict[str, str] | None = None) -> Ended:
+def run_process(words: list[str], log: pathlib.Path, timeout: float | None, memory: int | None, stop: Callable[[], bool], environment: dict[str, str] | None = None,
+                errors: pathlib.Path | None = None) -> Ended:
     """Runs a command with its output in `log`, and waits for its end.
 
     Args:
@@ -33,10 +34,11 @@ def run_process(words: list[str], log: pathlib.Path, timeout: float | None, memo
         memory: Bytes of addresses that it may have, or None.
         stop: Says whether the sweep is to end. The process is killed then.
         environment: Its variables, or None for those of this process.
+        errors: The file of what it writes on stderr, or None for `log`.
     """
     start = time.monotonic()
-    with open(log, "wb") as out:
-        child = subprocess.Popen(_limited(memory) + words, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT, start_new_session=True, env=environment)
+    with open(log, "wb") as out, open(errors or os.devnull, "wb") as err:
+        child = subprocess.Popen(_limited(memory) + words, stdin=subprocess.DEVNULL, stdout=out, stderr=err if errors else subprocess.STDOUT, start_new_session=True, env=environment)
     by, pidfd = "", os.pidfd_open(child.pid)
     try:
         while not select.select([pidfd], [], [], _wait(start, timeout))[0]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 from typing import Any, Sequence
 
@@ -21,7 +22,7 @@ class Program:
         self.path = path
         self.hash = file_hash(path)
         self.stamp = stamp_of(path)
-        self.facts = ask(self, [])[0]
+        self.facts = ask(path, [])[0]
 
 
 def stamp_of(path: str) -> list[int]:
@@ -30,14 +31,23 @@ def stamp_of(path: str) -> list[int]:
     return [about.st_size, about.st_mtime_ns]
 
 
-def ask(program: Program, points: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Returns what `glint describe --points` says: the facts of the program, then an answer for each point."""
+def ask(program: str, points: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Returns what `glint describe --points` of a program says: the facts of the program, then an answer for each point."""
     text = "".join(json.dumps(point) + "\n" for point in points)
-    done = subprocess.run([program.path, "describe", "--points", "-"], input=text, capture_output=True, text=True, check=False)
+    done = subprocess.run([program, "describe", "--points", "-"], input=text, capture_output=True, text=True, check=False)
     lines = done.stdout.splitlines()
     if done.returncode or len(lines) != len(points) + 1:
-        raise CommandFailed(f"{program.path} describe --points ended with exit code {done.returncode}: {done.stderr.strip()}", done.returncode, done.stderr)
+        raise CommandFailed(f"{_end_of(done)}, so nothing was run\n  note: its command was `{program} describe --points -`, with {len(points)} points", done.returncode, done.stderr)
     return [json.loads(line) for line in lines]
+
+
+def _end_of(done: subprocess.CompletedProcess[str]) -> str:
+    """Returns how the process that was to check points ended, in words, and what to do."""
+    if done.returncode >= 0:
+        return f"the process that checks points ended with exit code {done.returncode}: {done.stderr.strip() or 'it said nothing'}"
+    name = signal.Signals(-done.returncode).name if -done.returncode in list(signal.Signals) else f"signal {-done.returncode}"
+    why = ", as the system does when memory ends," if name == "SIGKILL" else ""
+    return f"the process that checks points was ended{why} by {name}: give the same command again"
 
 
 def words_of(point: dict[str, Any], oracles: Sequence[str], stats: str) -> list[str]:

@@ -16,7 +16,7 @@ from typing import Any, Iterator, Mapping, TextIO
 from ..errors import SweepError
 from ..launch import find_glint
 from .cluster import Cluster, distribute
-from .definition import Definition
+from .definition import ENGINES, Definition
 from .execution import Work, remove_left_scratch
 from .executors import DaskCluster, ExecutorCluster
 from .folder import SweepFolder
@@ -41,6 +41,15 @@ class Engine:
     chunk: int = 0
     slurm: tuple[str, ...] = ()
     detach: bool = False
+
+    def check(self) -> None:
+        """Raises SweepError for values that mean nothing."""
+        if self.name not in (None, *ENGINES):
+            raise SweepError(f"the engine is {self.name!r}: it is one of {', '.join(ENGINES)}")
+        for name in ("workers", "memory", "chunk"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < float("inf") or (name != "memory" and value != int(value)):
+                raise SweepError(f"`{name}` of the engine is {value!r}: a {'number' if name == 'memory' else 'whole number'} from 0 is needed")
 
 
 @dataclasses.dataclass
@@ -84,6 +93,7 @@ def run(sweep: str | pathlib.Path | Mapping[str, Any] | Definition, store: str |
         StoreFull: No space is left for points. What is done stays.
     """
     definition, engine = read(sweep), engine or Engine()
+    engine.check()
     program = Program(find_glint(glint))
     points = plan(definition, program)
     kept_in = Store(store or definition.store or DEFAULT_STORE)

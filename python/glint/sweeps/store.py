@@ -61,9 +61,12 @@ class Store:
             # Another process may just be beginning it.
             if not self.folder.is_dir() or {path.name for path in self.folder.iterdir()} - {"points", "failures", "sweeps", "tmp", "locks", "index.sqlite", _MARK}:
                 raise SweepError(f"{self.folder}: this folder is no store of sweeps and not empty: name another one with --store")
-        for name in ("points", "failures", "sweeps", "tmp"):
-            (self.folder / name).mkdir(parents=True, exist_ok=True)
-        write_whole(mark, json.dumps({"schema": SCHEMA}) + "\n")
+        try:
+            for name in ("points", "failures", "sweeps", "tmp"):
+                (self.folder / name).mkdir(parents=True, exist_ok=True)
+            write_whole(mark, json.dumps({"schema": SCHEMA}) + "\n")
+        except OSError as error:
+            raise SweepError(f"{self.folder}: no store can be made here: {error.strerror}: name another folder with --store") from error
 
     def close(self) -> None:
         """Gives back all locks."""
@@ -150,10 +153,13 @@ class Store:
             self._fill(scratch, files, record)
             self._appear(id, scratch)
         except OSError as error:
-            raise StoreFull(f"{self.folder}: the store takes no further point: {error}\n  note: what is done stays, and `glint sweep resume` goes on when this is mended") from error
+            raise self._full(error) from error
         finally:
             shutil.rmtree(scratch, ignore_errors=True)
         self.forget_failure(id)
+
+    def _full(self, error: OSError) -> StoreFull:
+        return StoreFull(f"{self.folder}: the store takes no further point: {error}\n  note: what is done stays, and `glint sweep resume` goes on when this is mended")
 
     def _fill(self, scratch: pathlib.Path, files: dict[str, pathlib.Path], record: dict[str, Any]) -> None:
         scratch.mkdir()
@@ -184,8 +190,11 @@ class Store:
     def fail(self, id: str, record: dict[str, Any]) -> None:
         """Records how a point failed, in the place of an earlier failure."""
         place = self.failure(id)
-        place.parent.mkdir(exist_ok=True)
-        write_whole(place, json.dumps(record, indent=1) + "\n", self.scratch(id))
+        try:
+            place.parent.mkdir(exist_ok=True)
+            write_whole(place, json.dumps(record, indent=1) + "\n", self.scratch(id))
+        except OSError as error:
+            raise self._full(error) from error
 
     def forget_failure(self, id: str) -> None:
         self.failure(id).unlink(missing_ok=True)
