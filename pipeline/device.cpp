@@ -23,6 +23,13 @@ void keep_not_finite(RenderResult& result, exec::NotFiniteStores stores, const e
     result.store_lines.try_emplace(store.pc, image.line_of(store.pc));
 }
 
+void add_instructions(RenderResult& result) {
+  for (const ClassCounts& counts : result.by_class) {
+    result.warp_instructions += counts.instructions;
+    result.lane_instructions += counts.lanes;
+  }
+}
+
 }  // namespace
 
 void Device::run_timed(const exec::World& world, const LaunchMode& mode, const LaunchWatch& watch,
@@ -51,29 +58,32 @@ void Device::run_timed(const exec::World& world, const LaunchMode& mode, const L
   result.stats = std::make_unique<RunStats>(std::move(machine));
 }
 
+RenderResult functional_result(const FunctionalCounts& counts, const exec::World& world) {
+  RenderResult result;
+  result.end = counts.end;
+  result.progress = counts.progress;
+  std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
+  result.rays = counts.rays;
+  result.faults = counts.faults;
+  keep_not_finite(result, counts.not_finite, *world.image);
+  result.stats = std::make_unique<RunStats>(counts);
+  add_instructions(result);
+  return result;
+}
+
 RenderResult Device::run(const exec::World& world, const LaunchMode& mode, const LaunchWatch& watch) {
   RenderResult result;
   const auto costs = mode.observe.heat ? std::make_unique<core::LaunchCosts>(world) : nullptr;
   const auto begin = std::chrono::steady_clock::now();
   if (mode.timing) {
     run_timed(world, mode, watch, costs.get(), result);
+    add_instructions(result);
   } else {
-    const FunctionalCounts counts =
-        run_functional(world, gpu_.core.instruction_budget, watch, {}, costs.get(), mode.threads);
-    result.end = counts.end;
-    result.progress = counts.progress;
-    std::copy(counts.by_class.begin(), counts.by_class.end(), result.by_class);
-    result.rays = counts.rays;
-    result.faults = counts.faults;
-    keep_not_finite(result, counts.not_finite, *world.image);
-    result.stats = std::make_unique<RunStats>(counts);
+    result = functional_result(
+        run_functional(world, gpu_.core.instruction_budget, watch, {}, costs.get(), mode.threads), world);
   }
   if (costs) result.costs = cost_maps(*costs, mode.timing);
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const ClassCounts& counts : result.by_class) {
-    result.warp_instructions += counts.instructions;
-    result.lane_instructions += counts.lanes;
-  }
   return result;
 }
 

@@ -23,6 +23,11 @@ struct LaunchMode {
   Observation observe;  // what else to note of a timing run
 };
 
+struct FunctionalCounts;
+
+// Returns the result of a functional run, without its time.
+RenderResult functional_result(const FunctionalCounts& counts, const exec::World& world);
+
 // Every launch has statistics of its own, which RenderResult::add() sums up. A launch gives back the memory
 // that the machine reserved for it, so a cold launch has the cycles that it has alone with the same memory.
 // Model: between launches nothing happens to the L2 and to DRAM; what a host writes there does not pass

@@ -13,12 +13,12 @@ namespace glint::pipeline {
 namespace {
 
 FunctionalCounts run_in_order(const exec::World& world, uint64_t instruction_budget, const LaunchWatch& watch,
-                              const Probe<exec::Retired>::Listener& listener, core::LaunchCosts* costs) {
+                              const LaunchListener& listener, core::LaunchCosts* costs) {
   exec::Executor executor(world);
   const exec::EndlessLoops endless(*world.image);
   BlockRunner runner(world, endless, instruction_budget);
   std::unique_ptr<core::CostRecorder> recorder;
-  if (listener) executor.retired.listen(listener);
+  if (listener.begin) listener.begin(executor);
   if (costs) {
     recorder = std::make_unique<core::CostRecorder>(*costs, executor.warps_per_block());
     executor.called.listen([&recorder](const exec::Called& called) {
@@ -43,7 +43,7 @@ FunctionalCounts run_in_order(const exec::World& world, uint64_t instruction_bud
   counts.progress.num_warps = executor.num_warps();
   try {
     for (; index < executor.num_blocks(); ++index)
-      if (!runner.run(executor, index, counts, is_over, recorder.get())) {
+      if (!runner.run(executor, index, counts, is_over, recorder.get(), listener.nodes)) {
         counts.end = LaunchEnd::Stopped;
         counts.progress.instructions = counts.instructions();
         if (const auto line = runner.busiest_line()) counts.progress.where = line->to_string(*world.image);
@@ -72,8 +72,19 @@ FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_b
                                 core::LaunchCosts* costs, uint32_t threads) {
   const uint32_t wanted = std::min(host_threads(threads), exec::num_blocks(world));
   if (wanted < 2 || listener || costs || prints(world))
-    return run_in_order(world, instruction_budget, watch, listener, costs);
+    return run_in_order(world, instruction_budget, watch,
+                        {.begin =
+                             [&](exec::Executor& executor) {
+                               if (listener) executor.retired.listen(listener);
+                             },
+                         .nodes = {}},
+                        costs);
   return run_ahead(world, instruction_budget, watch, wanted);
+}
+
+FunctionalCounts run_functional_heard(const exec::World& world, uint64_t instruction_budget,
+                                      const LaunchWatch& watch, const LaunchListener& listener) {
+  return run_in_order(world, instruction_budget, watch, listener, nullptr);
 }
 
 }  // namespace glint::pipeline

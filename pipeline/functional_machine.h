@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 
 #include "core/cost_recorder.h"
 #include "pipeline/block_runner.h"
@@ -24,5 +25,15 @@ struct FunctionalCounts : WorkCounts {
 FunctionalCounts run_functional(const exec::World& world, uint64_t instruction_budget,
                                 const LaunchWatch& watch, const Probe<exec::Retired>::Listener& listener = {},
                                 core::LaunchCosts* costs = nullptr, uint32_t threads = 1);
+
+// Hears of all that the blocks of a launch do.
+struct LaunchListener {
+  std::function<void(exec::Executor&)> begin;  // gets the executor before the first block starts
+  BlockRunner::NodeListener nodes;             // hears of nodes that rays visit, unless it is empty
+};
+
+// Does the same on one thread, and tells the listener.
+FunctionalCounts run_functional_heard(const exec::World& world, uint64_t instruction_budget,
+                                      const LaunchWatch& watch, const LaunchListener& listener);
 
 }  // namespace glint::pipeline

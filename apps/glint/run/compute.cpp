@@ -78,7 +78,7 @@ pipeline::RenderResult run_sampled(const compute::Program& program, compute::Siz
   setup.run = [&](const std::string&, const exec::World& world) {
     const bool is_timed = sample.is_timed(launch);
     last = is_timed ? sample.time(launch, world, Caches::Warm, setup.watch)
-                    : sample.warm(world, Caches::Warm, setup.watch);
+                    : sample.warm(launch, world, Caches::Warm, setup.watch);
     if (is_timed) done.launches[launch].cycles = last.cycles;
     ++launch;
     pipeline::RenderResult answer;

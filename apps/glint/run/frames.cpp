@@ -240,7 +240,7 @@ pipeline::RenderResult FrameRun::run_sample(const pipeline::LaunchWatch& watch, 
       // A frame needs nothing of another one but what it finds in the L2. Model: of frames that are not
       // timed, the last one before a timed one fills it.
       if (sample.is_timed(i + 1) && caches() == pipeline::Caches::Warm)
-        result = sample.warm(world_->world, caches(), job_.watch);
+        result = sample.warm(i, world_->world, caches(), job_.watch);
     }
     if (result.end != pipeline::LaunchEnd::Whole) return ended_early(std::move(*surveyed), result);
     if (sample.is_timed(i)) add_result(std::move(result), sum);
@@ -281,7 +281,8 @@ Exit run_frames(const Session& session, const SceneOptions& options, const Launc
   FrameRun frames(options, job, directory, info);
   std::vector<std::string> files;
   std::optional<LaunchSample> sample;
-  if (launch.sample.wants_launches()) sample.emplace(launch, job.gpu, job.no_skip, job.threads);
+  if (launch.sample.wants_launches())
+    sample.emplace(launch, job.gpu, job.no_skip, job.threads, LaunchSample::Traces::None);
   const pipeline::RenderResult sum = run_recorded(
       session, launch.max_cycles, directory, info,
       [&](const pipeline::LaunchWatch& watch) {

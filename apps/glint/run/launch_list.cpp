@@ -106,7 +106,7 @@ pipeline::RenderResult time_chosen(const LaunchList& list, report::RunInfo& info
       recorder.record(launch.name, launch.shader, world,
                       [&] { return sample.time(i, world, caches_of(launch), watch); });
     else
-      warmed = sample.warm(world, caches_of(launch), watch);
+      warmed = sample.warm(i, world, caches_of(launch), watch);
     const pipeline::RenderResult& last = sample.is_timed(i) ? recorder.sum() : warmed;
     results.lines = recorder.lines();
     if (last.end == pipeline::LaunchEnd::Whole) continue;

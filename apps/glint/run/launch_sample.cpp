@@ -10,7 +10,6 @@
 
 #include "exec/launch.h"
 #include "pipeline/run_stats.h"
-#include "pipeline/sampling/warm_launch.h"
 #include "report/files/csv_field.h"
 
 namespace glint::app {
@@ -48,15 +47,22 @@ std::vector<double> counts_of(const exec::World& world, const pipeline::RenderRe
 }  // namespace
 
 LaunchSample::LaunchSample(const LaunchOptions& options, const pipeline::GpuParams& gpu, bool no_skip,
-                           uint32_t threads)
-    : choice_(options.sample), gpu_(gpu), mode_{true, no_skip, threads, {}, {}}, device_(gpu) {
+                           uint32_t threads, Traces traces)
+    : choice_(options.sample),
+      gpu_(gpu),
+      mode_{true, no_skip, threads, {}, {}},
+      keeps_(traces),
+      device_(gpu),
+      warm_(gpu_, device_) {
 }
 
 pipeline::RenderResult LaunchSample::survey(const std::string& kernel, const exec::World& world,
                                             pipeline::Caches caches, const pipeline::LaunchWatch& watch) {
   pipeline::LaunchMode functional = mode_;
   functional.timing = false;
-  pipeline::RenderResult result = device_.run(world, functional, watch);
+  pipeline::RenderResult result = keeps_ == Traces::Kept
+                                      ? pipeline::functional_result(traces_.record(world, gpu_, watch), world)
+                                      : device_.run(world, functional, watch);
   faults_.add(result.faults);
   const bool finds_nothing =
       caches == pipeline::Caches::Cold ||
@@ -79,6 +85,7 @@ void LaunchSample::choose() {
       choice_.launches_of(uint32_t(surveyed_.size()), uint32_t(report::least_drawn(kinds)));
   strata_ = report::draw_rows(features, kinds, int(count), choice_.seed);
   for (size_t i = 0; i < strata_.drawn.size(); ++i) drawn_of_[size_t(strata_.drawn[i].row)] = i;
+  for (const auto& [launch, place] : drawn_of_) traces_.drop(launch);
 }
 
 void LaunchSample::keep_timed(std::vector<std::string>& names) const {
@@ -92,6 +99,7 @@ pipeline::RenderResult LaunchSample::time(size_t launch, const exec::World& worl
                                           const pipeline::LaunchWatch& watch) {
   pipeline::LaunchMode mode = mode_;
   mode.caches = caches;
+  warm_.give_back();
   pipeline::RenderResult result = device_.run(world, mode, watch);
   const report::DrawnRow& drawn = strata_.drawn[drawn_of_.at(launch)];
   const std::vector<double>& functional = surveyed_[launch].counts;
@@ -102,9 +110,12 @@ pipeline::RenderResult LaunchSample::time(size_t launch, const exec::World& worl
   return result;
 }
 
-pipeline::RenderResult LaunchSample::warm(const exec::World& world, pipeline::Caches caches,
+pipeline::RenderResult LaunchSample::warm(size_t launch, const exec::World& world, pipeline::Caches caches,
                                           const pipeline::LaunchWatch& watch) {
-  return pipeline::warm_launch(world, gpu_, caches, device_, watch);
+  if (!traces_.has(launch)) return warm_.run(world, caches, watch);
+  warm_.replay(traces_, launch, world, caches);
+  traces_.drop(launch);
+  return {};
 }
 
 void LaunchSample::finish(pipeline::RenderResult& sum) {

@@ -12,25 +12,31 @@
 #include "apps/glint/run/launch_options.h"
 #include "pipeline/device.h"
 #include "pipeline/sampling/launch_estimates.h"
+#include "pipeline/sampling/launch_traces.h"
+#include "pipeline/sampling/warm_launch.h"
 #include "report/characterize/strata.h"
 #include "report/files/run_directory.h"
 
 namespace glint::app {
 
-// The caller goes through its launches twice, in the same order and from the same memory:
+// The caller goes through its launches twice, in the same order and from the same memory. Launches that are
+// not timed run once, where their traces have room (pipeline::LaunchTraces):
 //
 //   for (..) sample.survey("kernel", world, caches, watch);  // every launch leaves its counts
 //   sample.choose();                                      // clusters the launches, and draws some of each
 //   for (i = 0; !sample.is_complete(); ++i)
 //     if (sample.is_timed(i)) sample.time(i, world, caches, watch);
-//     else sample.warm(world, caches, watch);             // for memory, and for what the L2 holds
+//     else sample.warm(i, world, caches, watch);          // for memory, and for what the L2 holds
 //   sample.finish(sum);                                   // adds the estimates to the sum of timed launches
 //   sample.keep(directory, info);
 //
 // The timed launches and the estimates are a function of launches, parameters and options alone.
 class LaunchSample {
  public:
-  LaunchSample(const LaunchOptions& options, const pipeline::GpuParams& gpu, bool no_skip, uint32_t threads);
+  // Says whether launches leave traces. They need not where hardly any launch is warmed.
+  enum class Traces : uint8_t { Kept, None };
+  LaunchSample(const LaunchOptions& options, const pipeline::GpuParams& gpu, bool no_skip, uint32_t threads,
+               Traces traces = Traces::Kept);
 
   // Runs a launch functionally, and notes what it did. `kernel` names launches that may be alike. The first
   // one of a kernel, and those that find empty caches, are not like those that find what others have touched.
@@ -47,7 +53,8 @@ class LaunchSample {
 
   pipeline::RenderResult time(size_t launch, const exec::World& world, pipeline::Caches caches,
                               const pipeline::LaunchWatch& watch);
-  pipeline::RenderResult warm(const exec::World& world, pipeline::Caches caches,
+  // Does to memory and to the L2 what a launch that is not timed does.
+  pipeline::RenderResult warm(size_t launch, const exec::World& world, pipeline::Caches caches,
                               const pipeline::LaunchWatch& watch);
 
   // Adds estimates, and the faults of all launches, to the sum of the timed ones.
@@ -68,7 +75,10 @@ class LaunchSample {
   const SampleChoice& choice_;
   const pipeline::GpuParams gpu_;
   const pipeline::LaunchMode mode_;
+  const Traces keeps_;
   pipeline::Device device_;
+  pipeline::LaunchTraces traces_;
+  pipeline::WarmCaches warm_;
   std::vector<Surveyed> surveyed_;
   exec::FaultLog faults_;
   report::Strata strata_;
