@@ -29,11 +29,12 @@ class Files(SweepTest):
                 (2, '"store"', "5", "the path of a folder is needed"), (1, WHOLE, "design = 5\n" + "\n".join(LINES[:5]), "a table [[design]] is needed"),
                 (7, LINES[6], LINES[6] + "\n[dask]\nscheduler = 5", "tcp://host:8786"), (7, "[2, 4]", "[1979-05-27]", "a number, a text, true or false"), (7, "[2, 4]", "[[2], [4]]", "integer"),
                 (1, "WKND_SH", "WKND\\u0000", "a zero byte"), (7, "keys", "points = 9\nkeys", "takes no `points`"), (2, "store =", "threads = 100000\nstore =", "--threads"),
-                (2, "store =", "seeds = [1.5]\nstore =", "a whole number"), (2, "store =", f"constraints = [{'(' * 5000 + '1' + ')' * 5000!r}]\nstore =", "cannot be"),
+                (2, "store =", "seeds = [1.5]\nstore =", "a whole number"), (2, "store =", "objectives = []\nstore =", "one metric at least"),
+                (7, LINES[6], LINES[6] + "\n[limits]\ntimeout = -5", "no time"), (2, "store =", "constraints = [' ']\nstore =", "an empty text"), (2, "store =", f"constraints = [{'(' * 5000 + '1' + ')' * 5000!r}]\nstore =", "cannot be"),
                 (2, "store =", "constraints = ['1 // 0 > rt.warps']\nstore =", "cannot be computed"), (2, "store =", "constraints = ['min(1)()']\nstore =", "may have keys")):
             with self.subTest(new[:60]):
                 self.assertIn(old, WHOLE)
-                self.refused(WHOLE.replace(old, new), line + 2 * ("[dask]" in new), words)
+                self.refused(WHOLE.replace(old, new), line + 2 * ("[dask]" in new or "[limits]" in new), words)
 
     def test_ranges_without_meaning_are_told_with_their_lines(self):
         for given, words in (("5, high = 7, scale = 'power2'", "no power of two"), ("1, high = 8, scale = 'power2', step = 1", "no step"), ("1, high = 8, integer = 1", "true or false"),
@@ -41,6 +42,22 @@ class Files(SweepTest):
                              ("1, high = 8, step = 0", "not above 0"), ("0, high = 8, scale = 'log', step = 1", "begins above 0"), ("1, hihg = 8", "low and high")):
             with self.subTest(given):
                 self.refused(WHOLE.replace("rt.warps = [2, 4]", RANGE % given), 7, words)
+
+    def test_options_that_no_run_takes_are_told_before_anything_runs(self):
+        for new, words in (('frames = "5:1"', "expected the first and the last frame"), ("sample-launches = 3", "needs --frames"), ("fps = 3", "belongs to a sequence"),
+                           ('sample = 500\nmode = "functional"', "need cycles"), ('frames = "0:3"\nsample-pixels = "5%"', "cannot be used with --frames"),
+                           ('frames = "0:1"\nanimation = "walk"', "belongs to glTF files"), ('sample-pixels = "5%"\nsample-seed = -1', "is not a whole number from 0")):
+            with self.subTest(new):
+                self.refused(WHOLE.replace("spp = 1", new), 5 + (new.startswith("frames") and "animation" in new) + ("seed" in new), words)
+        self.refused(WHOLE.replace("WKND_SH", "gaussian").replace("spp = 1", "profile = true"), 5, "cannot be used with compute programs")
+
+    def test_sweeps_of_too_many_points_are_refused_at_once(self):
+        self.refused("replicas = 10_000_000\n" + WHOLE, 1, "a sweep may have 4,000,000 points")
+        self.refused(WHOLE.replace("store =", "replicas = 3_000_000\nstore ="), 7, "3,000,000 seeds = 6,000,000 points")
+
+    def test_a_sweep_whose_file_has_no_name_for_a_folder_needs_one(self):
+        (self.folder / "my sweep.toml").write_text(WHOLE)
+        self.assertIn("give it a `name`", self.glint("run", "my sweep.toml", code=2).stderr)
 
     def test_a_file_that_is_no_text_is_told_with_its_line(self):
         (self.folder / "latin.toml").write_bytes(WHOLE.replace("8x8", "8x8\xe9").encode("latin-1"))

@@ -106,6 +106,8 @@ void check(const RunOptions& options) {
   if (options.small && !names_program(what))
     throw UserError({}, fmt::format("--small belongs to compute programs, and '{}' is none", what),
                     "'glint list programs' names them");
+  if (names_program(what)) check_program(what, options.launch);
+  if (is_scene(what)) check_scene_run(options.scene, options.launch);
 }
 
 Exit run(const Session& session, const RunOptions& options) {

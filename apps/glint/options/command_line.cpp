@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 namespace glint::app {
@@ -36,9 +37,12 @@ template <class T>
 Option Option::in_range(T least, T most) {
   const auto check = [=](const std::string& text) {
     T value = 0;
-    const bool is_inside = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
-    return is_inside ? std::string{}
-                     : fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+    // The parser takes -1 for the largest number where T has no sign.
+    const bool is_number =
+        CLI::detail::lexical_cast(text, value) && !(std::is_unsigned_v<T> && text.starts_with('-'));
+    return is_number && value >= least && value <= most
+               ? std::string{}
+               : fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
   };
   option_->check(CLI::Validator(
       check, fmt::format("{} in [{} - {}]", CLI::detail::type_name<T>(), least, most), "in_range"));

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <optional>
 
 #include "base/diagnostics.h"
@@ -99,6 +100,7 @@ void add_sample_options(Command command, SampleChoice& choice) {
       .one_of(Registry<pipeline::SampleWay>::names())
       .capture_default_str();
   command.add_option("--sample-seed", choice.seed, "Selects which pixels or launches a sample has")
+      .in_range(uint64_t{0}, std::numeric_limits<uint64_t>::max())
       .capture_default_str();
 }
 

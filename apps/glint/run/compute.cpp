@@ -35,15 +35,6 @@ std::string launch_table(const std::vector<compute::LaunchRecord>& launches) {
   return out;
 }
 
-void check_options(const std::string& name, const LaunchOptions& options) {
-  if (observes(options.observe))
-    throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with compute programs",
-                    "they belong to one launch, and '" + name + "' may have many");
-  if (!options.shaders.include_dirs.empty() || !options.shaders.defines.empty())
-    throw UserError({}, "-I and -D cannot be used with compute programs", "their kernels take no macros");
-  check_max_cycles(options.max_cycles, options.mode == "timing");
-}
-
 report::RunInfo describe_run(const Session& session, const compute::Program& program,
                              const std::string& input, const pipeline::GpuParams& gpu,
                              const LaunchOptions& options) {
@@ -98,8 +89,16 @@ bool names_program(const std::string& what) {
   return compute::find_program(what) != nullptr;
 }
 
+void check_program(const std::string& name, const LaunchOptions& options) {
+  if (observes(options.observe))
+    throw UserError({}, "--profile, --sample, --heat and --trace cannot be used with compute programs",
+                    "they belong to one launch, and '" + name + "' may have many");
+  if (!options.shaders.include_dirs.empty() || !options.shaders.defines.empty())
+    throw UserError({}, "-I and -D cannot be used with compute programs", "their kernels take no macros");
+  check_max_cycles(options.max_cycles, options.mode == "timing");
+}
+
 Exit run_program(const Session& session, const std::string& what, bool small, const LaunchOptions& options) {
-  check_options(what, options);
   const compute::Program& program = *compute::find_program(what);
   const std::string input(small ? program.small_input : program.full_input);
   pipeline::RenderJob job;

@@ -10,7 +10,10 @@ namespace glint::app {
 
 // Returns whether `what` is a program of the compute suite.
 bool names_program(const std::string& what);
-// Runs the program on its small or its full input, and checks every value that it computes.
+// Throws UserError for options that a program does not take.
+void check_program(const std::string& name, const LaunchOptions& options);
+// Runs a program, whose options were checked, on its small or its full input, and checks every value that it
+// computes.
 Exit run_program(const Session& session, const std::string& what, bool small, const LaunchOptions& options);
 
 }  // namespace glint::app

@@ -135,8 +135,6 @@ pipeline::RenderJob scene_job(const Session& session, const SceneOptions& option
   job.no_skip = launch.no_skip;
   job.on_fault = launch.on_fault;
   job.observe = launch.observe;
-  check_observation(job.observe, job.timing);
-  check_max_cycles(launch.max_cycles, job.timing);
   return job;
 }
 
@@ -185,16 +183,28 @@ report::RunInfo describe_scene(const Session& session, const SceneOptions& optio
   return info;
 }
 
-Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
+void check_scene_run(SceneOptions options, const LaunchOptions& launch) {
   check_scene(options);
-  if (options.sequence.is_wanted() && launch.sample.wants_pixels())
+  const bool timing = launch.mode == "timing", is_sequence = options.sequence.is_wanted();
+  check_observation(launch.observe, timing);
+  check_max_cycles(launch.max_cycles, timing);
+  if (is_sequence && launch.sample.wants_pixels())
     throw UserError({}, "--sample-pixels cannot be used with --frames",
                     "sample one frame, or time some of the frames with --sample-launches");
-  if (options.sequence.is_wanted()) return run_frames(session, options, launch);
-  check_without_frames(options.sequence);
-  if (launch.sample.wants_launches())
+  if (!is_sequence && launch.sample.wants_launches())
     throw UserError({}, "--sample-launches needs --frames, because a frame is one launch",
                     "--sample-pixels times a share of one frame");
+  if (!options.sequence.animation.empty() && !scenes::names_scene_file(options.scene))
+    throw UserError({}, fmt::format("--animation belongs to glTF files, and '{}' is none", options.scene));
+  if (is_sequence)
+    sequence_of(options.sequence);
+  else
+    check_without_frames(options.sequence);
+}
+
+Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch) {
+  check_scene(options);
+  if (options.sequence.is_wanted()) return run_frames(session, options, launch);
   ReadySceneJob ready(session, options, launch);
   pipeline::RenderJob& job = ready.job;
   report::RunDirectory directory(

@@ -54,6 +54,9 @@ report::StructureInfo structure_info(const pipeline::StructureCounts& made);
 std::string title_of(const pipeline::RenderJob& job, const SceneOptions& options,
                      const LaunchOptions& launch);
 
+// Throws UserError for options that do not go together, or have values that no scene takes. It loads nothing.
+void check_scene_run(SceneOptions options, const LaunchOptions& launch);
+// Runs what check_scene_run() has let pass.
 Exit run_scene(const Session& session, SceneOptions options, const LaunchOptions& launch);
 
 }  // namespace glint::app

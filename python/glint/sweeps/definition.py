@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import pathlib
 import re
 import tomllib
-from typing import Any, Mapping
+from typing import Any, Callable, Mapping
 
 from ..documents import flat
 from ..errors import MissingPackage, SweepError
@@ -22,6 +23,7 @@ _OWN = {"out": "the store has a folder for each point", "config": "use `configs`
         "threads": "use `threads`", "json": "the results go to the store", "progress-fd": "it is Glint's own"}
 _FILES = ("launch", "shader-dir", "assets", "include")  # options of [run] that name files
 ENGINES = ("local", "slurm", "dask")
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}")  # of a sweep, and of its folder in the store
 RETRIES = {"crash": 1, "timeout": 0, "memory": 1, "lost": 2}
 _MOST_POINTS = 4_000_000  # Choice: the list of points of such a sweep takes some 12 GB of memory (docs/scale.md).
 _DESIGN = ("method", "points", "seed", "keys", "list")
@@ -59,7 +61,10 @@ class Definition:
         text = _text_of(path)
         places = Places(str(path), text)
         try:
-            made = Definition.of({"name": path.stem, **tomllib.loads(text)}, path.resolve().parent)
+            tree = tomllib.loads(text)
+            if "name" not in tree and not _NAME.fullmatch(path.stem):
+                raise SweepError(f"the sweep has no `name`, and that of its file, {path.stem!r}, cannot be a folder's: give it a `name` of letters, digits, '_', '-' and '.'")
+            made = Definition.of({"name": path.stem, **tree}, path.resolve().parent)
         except tomllib.TOMLDecodeError as error:
             what, _, where = str(error).partition(" (at ")
             line = re.match(r"line (\d+)", where)
@@ -81,6 +86,7 @@ class Definition:
         folder = pathlib.Path(folder).resolve()
         limits, retry = _table(tree, "limits"), _table(tree, "retry")
         _known(limits, ("timeout", "memory"), "[limits]")
+        _check_replicas(tree)
         _known(retry, RETRIES, "[retry]")
         options, oracles = _options(_table(tree, "run"), folder)
         made = Definition(
@@ -88,7 +94,7 @@ class Definition:
             configs=[_path(one, folder) for one in _texts(tree, "configs", ["mobile"])], seeds=_seeds(tree), options=options, oracles=oracles,
             settings=flat(_table(tree, "set")), designs=_designs(tree.get("design", [])), constraints=_texts(tree, "constraints", []),
             stats=_word(tree, "stats", ("compact", "full"), "compact"), report=_flag(tree, "report"), objectives=_objectives(_texts(tree, "objectives", ["cycles"])),
-            timeout=seconds_of(limits["timeout"]) if "timeout" in limits else None, memory_limit=bytes_of(limits["memory"]) if "memory" in limits else None,
+            timeout=_limit(limits, "timeout", seconds_of), memory_limit=_limit(limits, "memory", bytes_of),
             retry={**RETRIES, **{kind: _whole(count, f"[retry] {kind}", 0) for kind, count in retry.items()}},
             engine=_word(tree, "engine", ENGINES, "local"), threads=_whole(tree.get("threads", 1), "threads", 1), slurm=_slurm(_table(tree, "slurm")),
             dask=_chunked(_table(tree, "dask"), "dask"), store=_store(tree, folder))
@@ -98,6 +104,8 @@ class Definition:
         if made.report and made.stats != "full":
             raise SweepError("`report` needs stats = \"full\": a report shows every unit, and compact statistics have totals alone")
         for text in made.constraints:
+            if not text.strip():
+                raise SweepError("`constraints` has an empty text: remove it")
             Constraint(text)
         made._check_designs()
         return made
@@ -109,6 +117,10 @@ class Definition:
         count = sum(number_of_points(one["method"], one["keys"], one.get("points"), one["list"]) for one in self.designs)
         if count > _MOST_POINTS:
             raise SweepError(f"[[design]] has {count:,} points, and a sweep may have {_MOST_POINTS:,}: take fewer values, or sample them with another `method`")
+        parts = {"workloads": len(self.workloads), "configs": len(self.configs), "points of [[design]]": count if self.designs else 1, "seeds": len(self.seeds)}
+        if math.prod(parts.values()) > _MOST_POINTS:
+            told = " x ".join(f"{number:,} {name}" for name, number in parts.items())
+            raise SweepError(f"the sweep has {told} = {math.prod(parts.values()):,} points, and it may have {_MOST_POINTS:,}: take fewer, or make several sweeps into one store")
         self.settings_of_points()
 
     def settings_of_points(self) -> list[tuple[int, dict[str, Any]]]:
@@ -149,6 +161,13 @@ def bytes_of(given: Any) -> int:
     return value
 
 
+def _limit(limits: Mapping[str, Any], name: str, read: Callable[[Any], Any]) -> Any:
+    try:
+        return read(limits[name]) if name in limits else None
+    except SweepError as error:
+        raise SweepError(f"`[limits] {name}`: {error}") from error
+
+
 def _known(table: Mapping[str, Any], names: Any, where: str) -> None:
     for key in table:
         if key not in names:
@@ -163,7 +182,7 @@ def _table(tree: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def _name(given: Any) -> str:
-    if not isinstance(given, str) or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}", given):
+    if not isinstance(given, str) or not _NAME.fullmatch(given):
         raise SweepError(f"`name` is {given!r}, which cannot be a folder's: letters, digits, '_', '-' and '.' are allowed, up to 64 of them")
     return given
 
@@ -200,6 +219,8 @@ def _different(values: list[Any], key: str) -> list[Any]:
 
 
 def _objectives(texts: list[str]) -> list[str]:
+    if not texts:
+        raise SweepError("`objectives` is []: a sweep needs one metric at least, such as \"cycles\"")
     if texts != ["cycles"]:
         from .page import objectives_of  # which workers do not need
         objectives_of(texts)
@@ -222,6 +243,11 @@ def _whole(value: Any, what: str, least: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < least:
         raise SweepError(f"`{what}` is {value!r}: a whole number from {least} is needed")
     return value
+
+
+def _check_replicas(tree: Mapping[str, Any]) -> None:
+    if isinstance(tree.get("replicas"), int) and tree["replicas"] > _MOST_POINTS:
+        raise SweepError(f"`replicas` is {tree['replicas']:,}, and a sweep may have {_MOST_POINTS:,} points")
 
 
 def _seeds(tree: Mapping[str, Any]) -> list[int]:
