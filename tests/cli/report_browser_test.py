@@ -247,7 +247,7 @@ class Browser(ReportTest):
             self.write(f"{name}/run.json", json.dumps(facts))
             self.runs[name] = name
         page, text = self.load("cornell", "wknd", "alpha", "kernel", script=HAND_OUT)
-        self.assertIn("Metrics by their relative change against CORNELL pt", text)
+        self.assertIn("Metrics come in order of their relative change against CORNELL pt", text)
         files = json.loads(next(attributes["data-kept"] for tag, attributes, _ in page.found if tag == "body"))
         rows = {row[0]: row[2:5] for row in csv.reader(files["changes.csv"].splitlines()[1:])}
         self.assertEqual(rows["proc_tests"], ["0", str(self.total("wknd", "gpu.rt_unit[*].rt.procedural_leaves")), ""])  # no "Infinity"

@@ -46,8 +46,8 @@ function timelines(runs) {
   const drawn = runs.map((run) => timeline(run, run.index)).filter(Boolean);
   return drawn.length ? h("div", { class: "figures" }, drawn.map(({ info, chart }) => figure(info, chart))) : null;
 }
-const kNames = { profile: "Profile", series: "Time series", timeline: "Warp timeline", heat: "Maps of cost" };
-const missing = (runs, what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, `${kNames[what]} not recorded: run with `, h("code", {}, option), "."));
+const kNames = { profile: "profile", series: "time series", timeline: "timeline of warps", heat: "map of cost" };
+const missing = (runs, what, option) => (runs.some((run) => run.data[what]) ? null : h("p", { class: "note" }, `No ${kNames[what]} was recorded; `, h("code", {}, option), " records it."));
 
 function section(id, title, lead, ...content) {
   const known = content.flat().filter(Boolean);
@@ -69,14 +69,14 @@ function sectionsOf(data, runs) {
   return [
     overview(runs),
     section("comparison", "Comparison", null, means(compared), figuresOf([ofRuns(ipc, compared)], compared), deltas(compared, data.metric_docs)),
-    section("bounds", "How near to the limits", "Each resource against the most it could do in the time the run took. The highest is the one to look at first.", bounds(runs)),
-    section("stalls", "Where the time goes", "The largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, with the keys that bear on them.", stalls(runs), figures(cpiStack)),
+    section("bounds", "How near to the limits", "Each bar shows what a resource did, as a share of the most that it could do in the time of the run. The highest is the one to look at first.", bounds(runs)),
+    section("stalls", "Where the time goes", "These are the largest reasons why a scheduler issued nothing, as shares of all scheduler cycles, and the keys that bear on them.", stalls(runs), figures(cpiStack)),
     section("instructions", "Instructions", null, figures(instructionMix, stages, stageCycles, ops, opCycles, opLatency), missing(runs, "profile", "--profile")),
     section("rays", "Rays and RT units", null, figures(rtUse, traversal, rtCycles, fetchMix, rayHistograms.nodes, rayHistograms.latency)),
     section("memory", "Memory", null, figures(memoryLatency.stages, caches.l1, caches.l2, memoryLatency.spread, dram.use, dram.clocks)),
     section("time", "Over time", null, figures(series) ?? missing(runs, "series", "--sample CYCLES"), timelines(runs) ?? missing(runs, "timeline", "--trace")),
     section("heat", "What each pixel cost", "Colours go in even steps from 0 to what 99 of 100 pixels do not exceed.", heat(runs, data.heat_scale) ?? missing(runs, "heat", "--heat")),
-    section("source", "Source", "Where the cycles of schedulers went, line by line: at the instruction that issued, or at the one whose warp was nearest to issue.", source(runs) ?? missing(runs, "profile", "--profile")),
+    section("source", "Source", "Each cycle of a scheduler is charged to a line: to that of the instruction that issued, or of the one whose warp was nearest to issue.", source(runs) ?? missing(runs, "profile", "--profile")),
     section("structure", "Scene and structures", null, figures(geometry), structure(runs)),
   ];
 }

@@ -8,7 +8,7 @@ const kRow = 17;
 
 export const info = {
   id: "dendrogram", wide: true, title: "Dendrogram",
-  note: (data) => `${data.linkage[0].toUpperCase()}${data.linkage.slice(1)} linkage on Euclidean distance in the ${data.kept} components. The dashed line cuts the tree into ${data.clusters} clusters; filled circles are their representatives${data.reference.known ? `, open ones ${data.reference.name}` : ""}.`,
+  note: (data) => `${data.linkage[0].toUpperCase()}${data.linkage.slice(1)} linkage joined the groups, on Euclidean distance in the ${data.kept} components. The dashed line cuts the tree into ${data.clusters} clusters; filled circles are their representatives${data.reference.known ? `, open ones ${data.reference.name}` : ""}.`,
 };
 
 // Returns where every group lies: its row (between those of its two parts), its distance, and its cluster, or -1 where it joins several.

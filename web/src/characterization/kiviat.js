@@ -13,7 +13,7 @@ const spokes = (data) => h("ol", { class: "note spokes" }, data.axes.map((axis) 
 
 export const info = {
   id: "kiviats", wide: true, title: "Kiviat diagrams", before: spokes,
-  note: "The metrics that tell the workloads apart best, each from the least of all workloads in the centre to the most at the rim. Workloads in the order of the dendrogram, in the colour of the cluster; spokes clockwise from the top:",
+  note: "Spokes are the metrics that tell the workloads apart best, each from the least of all workloads in the centre to the most at the rim. Workloads come in the order of the dendrogram and have the colour of their cluster. Clockwise from the top, the spokes are:",
 };
 
 export function make(data) {

@@ -31,11 +31,11 @@ function points(data) {
 }
 
 export const scatter = {
-  info: { id: "model-cycles", wide: true, title: "Predicted and simulated cycles", note: (data) => `${data.models.map((one) => `${one.name}: ${data.workloads.length < kLeastForR2 ? "" : `R² ${one.r2.toFixed(3)}, `}mean error ${percent(one.mape)}`).join("; ")}. On the dashed line both are equal.` },
+  info: { id: "model-cycles", wide: true, title: "Predicted and simulated cycles", note: (data) => `${data.models.map((one) => `${one.name} has ${data.workloads.length < kLeastForR2 ? "" : `an R² of ${one.r2.toFixed(3)} and `}a mean error of ${percent(one.mape)}`).join("; ")}. On the dashed line both are equal.` },
   make: points,
 };
 
 export const errors = {
-  info: { id: "model-errors", wide: true, title: "Error of each workload", note: "Size of the difference, of the simulated cycles." },
+  info: { id: "model-errors", wide: true, title: "Error of each workload", note: "Each value is the size of the difference, as a share of the simulated cycles." },
   make: ({ models, workloads }) => bars({ rows: workloads.map((one) => one.name), series: models.map((one, i) => ({ name: one.name, colour: kColours[i], values: workloads.map((each) => Math.abs(each.predicted[i] / each.cycles - 1)) })), format: (value) => percent(value, 0) }),
 };

@@ -8,7 +8,7 @@ const kHeight = 230;
 
 export const info = {
   id: "scree", wide: true, title: "Eigenvalues",
-  note: (data) => `Variance along each component, in metrics' worth: above 1 it says more than a single metric, and is kept (${data.kept} of ${data.eigenvalues.length}).`,
+  note: (data) => `A bar is the variance along a component, in metrics' worth. Above 1 the component says more than a single metric, and is kept (${data.kept} of ${data.eigenvalues.length}).`,
 };
 
 export function make(data) {

@@ -31,10 +31,10 @@ function reads(runs, cache, kinds) {
 }
 
 export const l1 = {
-  info: { id: "l1", title: "L1 reads", note: "Of the RT units and of the shaders. Labels are shares of a bar, its length the share of all reads." },
+  info: { id: "l1", title: "L1 reads", note: "A bar is as long as its share of all reads of the L1s, and its labels are shares of the bar." },
   make: (runs) => reads(runs, "core[*].l1", kL1),
 };
 export const l2 = {
-  info: { id: "l2", title: "L2 reads", note: "What the L1s asked for, by who had asked them." },
+  info: { id: "l2", title: "L2 reads", note: "The bars tell apart who had asked the L1s for what these ask of the L2." },
   make: (runs) => reads(runs, "partition[*].l2", kL1),
 };

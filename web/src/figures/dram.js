@@ -7,7 +7,7 @@ import { measures, runRows } from "./shared.js";
 const kParts = [["data", "data", "green"], ["column_wait", "waits for a column", "sky"], ["row_wait", "waits for a row", "orange"], ["turnaround", "turns the bus", "pink"], ["refresh", "refresh", "red"], ["idle", "idle", "pale"]];
 
 export const use = {
-  info: { id: "dram", title: "DRAM utilisation and efficiency", note: "Utilisation: clocks with data of all. Efficiency: of those in which the channel had work. Row locality: requests whose row was open." },
+  info: { id: "dram", title: "DRAM utilisation and efficiency", note: "Utilisation is the share of all clocks that move data, and efficiency their share of the clocks in which the channel had work. Row locality is the share of requests that found their row open." },
   make: (runs) =>
     measures(
       runs,
@@ -21,7 +21,7 @@ export const use = {
 };
 
 export const clocks = {
-  info: { id: "dram-clocks", wide: true, title: "Clocks of the DRAM channels", note: "All channels, from launch to end." },
+  info: { id: "dram-clocks", wide: true, title: "Clocks of the DRAM channels", note: "The bar has the clocks of all channels from the launch to its end." },
   make: (runs) =>
     runs.some((run) => run.sum("gpu.memory.partition[*].dram.clocks"))
       ? stacked({ rows: runRows(runs), parts: kParts.map(([key, name, colour]) => ({ name, colour, values: runs.map((run) => run.sum(`gpu.memory.partition[*].dram.use::${key}`) ?? 0) })), unit: "clocks" })

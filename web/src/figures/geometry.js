@@ -16,7 +16,7 @@ const kMeasures = [
 export const info = {
   id: "geometry", coloured: true, wide: true,
   title: "Geometry and structures",
-  note: "Each row as shares of its largest value. Depth is of the deepest path, both levels; size of all structures.",
+  note: "Each row shows shares of its largest value. Depth is that of the deepest path through both levels, and size that of all structures.",
 };
 
 export function make(runs) {

@@ -12,7 +12,7 @@ export const info = {
   id: "instruction-mix",
   wide: true,
   title: "Instruction mix",
-  note: "Warp instructions by class: how many were issued, and the cycles from issue to completion, summed. Few instructions may hold most of the latency.",
+  note: "Bars show, by class, how many warp instructions were issued, and the sum of their cycles from issue to completion. Few instructions may hold most of the latency.",
 };
 
 export function make(runs) {

@@ -4,7 +4,7 @@ import { number } from "../format.js";
 import { bars } from "../kinds/bars.js";
 import { runColour } from "../theme.js";
 
-export const info = { id: "ipc", wide: true, title: "IPC across configurations", note: "Warp instructions per cycle of the whole GPU." };
+export const info = { id: "ipc", wide: true, title: "IPC across configurations", note: "IPC counts the warp instructions of the whole GPU in a cycle." };
 
 export function make(runs) {
   if (runs.length < 2) return null;

@@ -14,7 +14,7 @@ const kStages = [
 ];
 
 export const stages = {
-  info: { id: "miss-stages", wide: true, title: "Latency of an L1 miss by stage", note: "Mean cycles of a read that did not hit, under the load of the run; the stages add up exactly." },
+  info: { id: "miss-stages", wide: true, title: "Latency of an L1 miss by stage", note: "The bar has the mean cycles of a read that did not hit, under the load of the run. The stages add up exactly." },
   make: (runs) => {
     const mean = runs.map((run) => ratio(run.sum(`${kL1}.miss_cycles`), run.sum(`${kL1}.timed_misses`)));
     if (mean.some((value) => value === null)) return null;
@@ -30,7 +30,7 @@ export const stages = {
 };
 
 export const spread = {
-  info: { id: "miss-latency", coloured: true, title: "Latency of L1 misses", note: (runs) => (runs.length > 1 ? "Share of the reads that did not hit." : "Share of the reads that each level answered.") },
+  info: { id: "miss-latency", coloured: true, title: "Latency of L1 misses", note: (runs) => (runs.length > 1 ? "Values are shares of the reads that did not hit." : "Values are shares of the reads that each level answered.") },
   make: (runs) => {
     const one = runs.length === 1;
     const series = one

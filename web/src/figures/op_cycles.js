@@ -5,7 +5,7 @@ import { opShares } from "./ops.js";
 export const info = {
   id: "op-cycles", coloured: true,
   title: "Scheduler cycles by op",
-  note: "Share of the scheduler cycles charged to the op: it issued, or its warp waited nearest to issue.",
+  note: "A cycle of a scheduler is charged to the op that issued in it, or to the one whose warp was nearest to issue.",
 };
 
 export const make = (runs) => (runs.filter((run) => run.data.profile).length > 1 ? opShares(runs, ["cycles"]) : null);

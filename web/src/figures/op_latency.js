@@ -9,7 +9,7 @@ const kShown = 12;
 export const info = {
   id: "op-latency", coloured: true,
   title: "Latency by op",
-  note: "Mean cycles from issue to completion of accesses that went to the L1 and of traces, those with the largest sum first.",
+  note: "Bars show mean cycles from issue to completion, of accesses that went to the L1 and of traces. The op with the largest sum comes first.",
 };
 
 export function make(runs) {

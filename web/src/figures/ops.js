@@ -12,8 +12,8 @@ export const info = {
   title: "Instructions by op",
   note: (runs) =>
     runs.filter((run) => run.data.profile).length > 1
-      ? "Share of the warp instructions issued."
-      : "Share of the warp instructions issued, and of the scheduler cycles charged to the op: it issued, or its warp waited nearest to issue.",
+      ? "Bars are shares of the warp instructions that were issued."
+      : "Bars are shares of the warp instructions that were issued, and of scheduler cycles. A cycle is charged to the op that issued in it, or to the one whose warp was nearest to issue.",
 };
 
 export function make(runs) {

@@ -9,10 +9,10 @@ function histogramOf(runs, path, unit) {
 }
 
 export const nodes = {
-  info: { id: "ray-nodes", coloured: true, title: "Nodes visited by a ray", note: "Share of rays." },
+  info: { id: "ray-nodes", coloured: true, title: "Nodes visited by a ray", note: "Bars are shares of all rays." },
   make: (runs) => histogramOf(runs, "gpu.rt_unit[*].rt.ray_nodes", "nodes"),
 };
 export const latency = {
-  info: { id: "ray-latency", coloured: true, title: "Time of a ray in the RT unit", note: "Share of rays, from acceptance to stop; of a ray that comes back from a shader, all its stays together." },
+  info: { id: "ray-latency", coloured: true, title: "Time of a ray in the RT unit", note: "A ray’s time goes from its acceptance to its stop. All stays of a ray that comes back from a shader count together." },
   make: (runs) => histogramOf(runs, "gpu.rt_unit[*].rt.ray_latency", "cycles"),
 };

@@ -9,7 +9,7 @@ const kParts = [
   ["prefetch", "sends a prefetch", "grey"], ["handover", "hand-over", "yellow"], ["idle", "idle", "pale"],
 ];
 
-export const info = { id: "rt-cycles", title: "Cycles of the RT units", note: "All units, from launch to end." };
+export const info = { id: "rt-cycles", title: "Cycles of the RT units", note: "The bar has the cycles of all units from the launch to its end." };
 
 export function make(runs) {
   if (!runs.some((run) => run.sum("gpu.rt_unit[*].rt.rays"))) return null;

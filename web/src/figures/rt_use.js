@@ -6,7 +6,7 @@ import { measures } from "./shared.js";
 export const info = {
   id: "rt-use",
   title: "RT-unit occupancy and efficiency, SIMT efficiency",
-  note: "Occupancy: warp slots of the unit in use while it has any. Efficiency: lanes of its warps with a ray in flight. SIMT: lanes that execute an instruction.",
+  note: "Occupancy is the share of the unit’s warp slots that are in use while it has any warp. Efficiency is the share of its warps’ lanes with a ray in flight, and SIMT efficiency that of the lanes that execute an instruction.",
 };
 
 export function make(runs) {

@@ -12,7 +12,7 @@ const kPanels = [
   { column: "dram_use", name: "DRAM clocks with data", format: (value) => percent(value, 0) },
 ];
 
-export const info = { id: "series", coloured: true, wide: true, title: "The run over time", note: "Means of each interval." };
+export const info = { id: "series", coloured: true, wide: true, title: "The run over time", note: "Each point is the mean of its interval." };
 
 export function make(runs) {
   const sampled = runs.filter((run) => run.data.series?.cycle?.length);

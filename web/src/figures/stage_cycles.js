@@ -10,7 +10,7 @@ export const info = {
   id: "stage-cycles",
   wide: true,
   title: "Time by shader stage",
-  note: "Share of all scheduler cycles, by what they went into: at the stage’s instruction that issued, or whose warp was nearest to issue.",
+  note: "Bars are shares of all scheduler cycles. A cycle counts for the stage whose instruction issued in it, or whose warp was nearest to issue.",
 };
 
 export function make(runs) {

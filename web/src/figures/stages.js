@@ -14,7 +14,7 @@ export const info = {
   id: "stages",
   wide: true,
   title: "Instruction mix by shader stage",
-  note: "Shares of a run’s warp instructions, and of their cycles from issue to completion, summed: those of one warp overlap. An instruction is of the stage whose code it stands in; a trace’s time is of the stage that traces.",
+  note: "Bars are shares of a run’s warp instructions, and of the sum of their cycles from issue to completion, in which those of one warp overlap. An instruction is of the stage whose code it stands in; a trace’s time is of the stage that traces.",
 };
 
 export function make(runs) {

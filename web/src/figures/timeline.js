@@ -44,7 +44,7 @@ export function timeline(run, index) {
   if (!data?.slices.length) return null;
   const tracks = [...new Set(data.slices.map(([thread]) => thread))].sort((a, b) => a - b);
   const chart = gantt({ tracks: tracks.map(trackName), groups: groupsOf(data, tracks), begin: data.begin, end: data.end, unit: "cycle" });
-  const note = [`SM ${data.core}, cycles ${number(data.begin)} to ${number(data.end)} of a trace from ${number(data.trace_begin)} to ${number(data.trace_end)}.`,
+  const note = [`The figure shows SM ${data.core}, cycles ${number(data.begin)} to ${number(data.end)} of a trace from ${number(data.trace_begin)} to ${number(data.trace_end)}.`,
     data.cut ? "It ends early: no more bars than these are drawn." : "", "The strip above a bar is the shader stage. Another window: glint report --timeline FROM:TO --timeline-sm N; all of it: trace.json.gz at ui.perfetto.dev."];
   const rows = data.slices.map(([thread, kind, after, length, what, rays = null, nodes = null]) => [trackName(thread), data.kinds[kind], data.names[what], data.begin + after, length, rays, nodes]);
   return {

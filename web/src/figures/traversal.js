@@ -6,7 +6,7 @@ import { measures } from "./shared.js";
 export const info = {
   id: "traversal",
   title: "Traversal ratio",
-  note: "Nodes that a ray visits, mean, for each level of the structure. 1 would be one straight way down.",
+  note: "The traversal ratio is the mean number of nodes that a ray visits for each level of the structure. It would be 1 on one straight way down.",
 };
 
 export function make(runs) {

@@ -7,7 +7,7 @@ const factor = (value) => (value === null || value === undefined ? "" : value.to
 const compared = (data) => data.arms.filter((arm) => arm.against && !arm.is_pair);
 
 export const means = {
-  info: { id: "lab-means", wide: true, title: "Speed-up of each arm", note: "Geometric mean over the workloads. Above 1 the arm is faster than its baseline." },
+  info: { id: "lab-means", wide: true, title: "Speed-up of each arm", note: "Each value is a geometric mean over the workloads. Above 1 the arm is faster than its baseline." },
   make: (data) => {
     const arms = compared(data), hasPublished = arms.some((arm) => arm.published !== null);
     if (arms.length === 0) return null;
@@ -18,7 +18,7 @@ export const means = {
 };
 
 export const workloads = {
-  info: { id: "lab-by-workload", wide: true, title: "Speed-up by workload", note: (data) => (compared(data).length > kMaxColours ? `The first ${kMaxColours} arms.` : "") },
+  info: { id: "lab-by-workload", wide: true, title: "Speed-up by workload", note: (data) => (compared(data).length > kMaxColours ? `The figure shows the first ${kMaxColours} arms.` : "") },
   make: (data) => {
     const arms = compared(data).slice(0, kMaxColours);
     const rows = [...new Set(arms.flatMap((arm) => arm.workloads.map((one) => one.workload)))];

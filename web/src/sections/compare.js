@@ -73,6 +73,6 @@ export function deltas(runs, docs) {
   const columns = ["metric", "unit", ...pairs.flatMap(([base, run]) => [base.label, run.label, "ratio"])];
   const save = () => download("changes.csv", "text/csv", csv(columns, rows.map(({ doc, ratios }) => [doc.name, doc.unit, ...pairs.flatMap(([base, run], k) => [base.metric(doc.name), run.metric(doc.name), Number.isFinite(ratios[k]) ? ratios[k] : null])])));
   const unfold = h("button", { type: "button", onclick: () => { table.classList.add("whole"); unfold.remove(); } }, `All ${rows.length} metrics`);
-  const note = `Metrics by their relative change${one ? ` against ${one.label}` : ", each run against the first of its workload"}, the largest of either sign first; what was 0 and is not any more comes before.`;
+  const note = `Metrics come in order of their relative change${one ? ` against ${one.label}` : ", each run against the first of its workload"}, the largest of either sign first; before them comes what was 0 and is not any more.`;
   return h("figure", { id: "deltas", class: "wide" }, h("h3", {}, "What changed most"), h("p", { class: "note" }, note), h("div", { class: "scroll" }, table), h("figcaption", {}, rows.length > kShown ? unfold : null, h("button", { type: "button", onclick: save }, "CSV")));
 }

@@ -86,6 +86,6 @@ export function flameGraph(source, open) {
   draw([tree]);
   const legend = kGroups.filter(({ name }) => name !== "no warp").map(({ name, colour }) => h("span", {}, h("i", { style: `background:var(--${colour})` }), name));
   return h("div", { class: "flame" }, h("h3", {}, "Calls"),
-    h("p", { class: "note" }, "Stages, the calls that were inlined, lines: as wide as their cycles, coloured by what most of them went into. Click a call to enlarge it, a line to find it above. The numbers are in profile.folded."),
+    h("p", { class: "note" }, "Rows show stages, the calls that were inlined, and lines. Each is as wide as its cycles and has the colour of what most of them went into. Click a call to enlarge it, a line to find it above. The numbers are in profile.folded."),
     h("p", { class: "legend" }, legend), said, rows);
 }
