@@ -64,7 +64,7 @@ struct Launched {
   bool is_launch = false;  // false: it had no threads
   pipeline::LaunchEnd end = pipeline::LaunchEnd::Whole;
   uint64_t cycles = 0;    // 0 without timing
-  exec::FaultLog faults;  // faults that were reported as warnings
+  exec::FaultLog faults{};  // faults that were reported as warnings
 };
 
 // Runs `command` with the code of its pipeline and leaves the buffers of `script` as they are afterwards.

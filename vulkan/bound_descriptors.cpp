@@ -135,7 +135,7 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
                     set->second.stored ? stored : descriptors_of(*set->second.set, binding->second)};
   const pipeline::BindingPlace number{use.set, use.binding};
   switch (kind_of(place.layout.type)) {
-    case DescriptorKind::Buffer:
+    case DescriptorKind::PlainBuffer:
       return bind_buffers(device, builder, place, number);
     case DescriptorKind::InlineBlock:
       return builder.bind_buffers(number, {{inline_block_of(set->second, number_there), place.layout.count}});

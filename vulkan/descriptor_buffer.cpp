@@ -35,7 +35,7 @@ Stored stored_from(const VkDescriptorGetInfoEXT& info) {
   Stored out;
   out.type_plus_one = uint32_t(info.type) + 1;
   switch (kind_of(info.type)) {
-    case DescriptorKind::Buffer:
+    case DescriptorKind::PlainBuffer:
     case DescriptorKind::TexelBuffer:
       // All kinds of buffers have the same pointer in the union.
       if (const VkDescriptorAddressInfoEXT* const bytes = info.data.pStorageBuffer)
@@ -62,7 +62,7 @@ Stored stored_from(const VkDescriptorGetInfoEXT& info) {
 void unpack(const Stored& from, DescriptorKind kind, Descriptor& to) {
   if (from.type_plus_one == 0 || kind_of(VkDescriptorType(from.type_plus_one - 1)) != kind) return;
   switch (kind) {
-    case DescriptorKind::Buffer:
+    case DescriptorKind::PlainBuffer:
     case DescriptorKind::TexelBuffer:
       to.address = from.first, to.range = from.second, to.format = from.format;
       break;

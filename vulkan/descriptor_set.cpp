@@ -49,7 +49,7 @@ class Cursor {
 void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
   Descriptor& to = cursor.next();
   const DescriptorKind kind = kind_of(type);
-  if (kind == DescriptorKind::Buffer) {
+  if (kind == DescriptorKind::PlainBuffer) {
     const auto& from = *static_cast<const VkDescriptorBufferInfo*>(info);
     to.buffer = from.buffer, to.offset = from.offset, to.range = from.range;
     return;
@@ -71,7 +71,7 @@ void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
 // Returns where the application keeps what it writes to a descriptor.
 const void* info_of(const VkWriteDescriptorSet& from, uint32_t element) {
   switch (kind_of(from.descriptorType)) {
-    case DescriptorKind::Buffer:
+    case DescriptorKind::PlainBuffer:
       return from.pBufferInfo + element;
     case DescriptorKind::TexelBuffer:
       return from.pTexelBufferView + element;
@@ -124,7 +124,7 @@ DescriptorKind kind_of(VkDescriptorType type) {
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
     case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
     case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
-      return DescriptorKind::Buffer;
+      return DescriptorKind::PlainBuffer;
     case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
     case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
       return DescriptorKind::TexelBuffer;

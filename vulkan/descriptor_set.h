@@ -27,7 +27,7 @@ struct Descriptor {
 
 // Says what descriptors of a type refer to.
 enum class DescriptorKind : uint8_t {
-  Buffer,
+  PlainBuffer,
   InlineBlock,
   TexelBuffer,
   Image,

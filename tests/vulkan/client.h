@@ -52,8 +52,8 @@ struct PipelineOptions {
 class Client {
  public:
   struct Options {
-    std::vector<const char*> layers, extensions;
-    std::vector<const char*> instance_extensions;
+    std::vector<const char*> layers{}, extensions{};
+    std::vector<const char*> instance_extensions{};
     VkPhysicalDeviceFeatures features{};
     const void* more_features = nullptr;  // pNext of the device
     uint32_t queues = 1;

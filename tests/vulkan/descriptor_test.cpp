@@ -99,7 +99,8 @@ TEST_CASE("a descriptor that no shader uses may name a view that is destroyed") 
                           "void main() { if (v[0] == 7) v[1] = uint(texelFetch(gone, 0).x); v[2] = 5; }\n",
                       {{types[0], types[1]}});
   const VkDescriptorSet set = allocate(client, pipeline.set_layout, {{types[0], 1}, {types[1], 1}});
-  VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+  VkBufferViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
   info.buffer = bytes.buffer, info.format = VK_FORMAT_R8G8B8A8_UNORM, info.range = VK_WHOLE_SIZE;
   VkBufferView view = nullptr;
   REQUIRE(vkCreateBufferView(client.device, &info, nullptr, &view) == VK_SUCCESS);

@@ -110,7 +110,7 @@ TEST_CASE("a turn of an atomic that has all words of its sector takes its own ti
   Params params = bare();
   params.l2.atomic_interval = 5;
   params.l2.atomic_whole_interval = 3;
-  for (const uint8_t lanes : {1, 7, 8}) {
+  for (const uint8_t lanes : {uint8_t{1}, uint8_t{7}, uint8_t{8}}) {
     Request request = atomic(kLine, 1);
     request.atomic = {.lanes = lanes, .turns = 1};
     CHECK(l2_latency(params, request) == kL2Hit + (lanes == 8 ? 3 : 5) - 1);

@@ -29,8 +29,8 @@ uint32_t number_bits(uint32_t x, uint32_t k) {
     return n ^ n >> 16;
   };
   const uint32_t own = hash(x * 64 + k + 1), first = hash(x * 64 + 1);
-  if (x & 1) return (first & 0x007ffff0u | 0x3f800000u) + (own >> 28);
-  return own & 0x807fffffu | (124 + (own >> 23 & 7)) << 23;
+  if (x & 1) return ((first & 0x007ffff0u) | 0x3f800000u) + (own >> 28);
+  return (own & 0x807fffffu) | (124 + (own >> 23 & 7)) << 23;
 }
 const std::string kNumberInGlsl = R"(
 uint hash(uint n) { n = (n ^ n >> 16) * 0x7feb352du; n = (n ^ n >> 15) * 0x846ca68bu; return n ^ n >> 16; }
