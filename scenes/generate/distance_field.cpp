@@ -31,15 +31,17 @@ class SurfaceNets {
     for (size_t axis = 0; axis < 3; ++axis)
       points_[axis] = (int((box.upper[axis] - box.lower[axis]) / cell) / kCoarse + 1) * kCoarse;
     values_.resize(size_t(points_[0]) * size_t(points_[1]) * size_t(points_[2]));
+    near_.resize(values_.size() / (kBlock * kBlock * kBlock));
   }
 
   Model run() {
     sample();
     std::array<std::vector<uint32_t>, 2> slices;
-    for (auto& slice : slices) slice.assign(size_t(points_[0]) * size_t(points_[1]), kNone);
+    slices[0].resize(size_t(points_[0]) * size_t(points_[1]));
     for (int z = 0; z + 1 < points_[2]; ++z) {
+      slices[1].assign(slices[0].size(), kNone);
       for (int y = 0; y + 1 < points_[1]; ++y)
-        for (int x = 0; x + 1 < points_[0]; ++x) slices[1][slot(x, y)] = cell_vertex(x, y, z);
+        for_near_points(0, y, z, [&](int x) { slices[1][slot(x, y)] = cell_vertex(x, y, z); });
       if (z > 0) add_faces(slices[0], slices[1], z);
       std::swap(slices[0], slices[1]);
     }
@@ -54,6 +56,20 @@ class SurfaceNets {
   }
   Vec3 point(float x, float y, float z) const { return origin_ + Vec3{x, y, z} * cell_; }
 
+  size_t block(int x, int y, int z) const {
+    return (size_t(z / kBlock) * size_t(points_[1] / kBlock) + size_t(y / kBlock)) *
+               size_t(points_[0] / kBlock) +
+           size_t(x / kBlock);
+  }
+  // Calls `visit` with each x of a row, from `first` to the last but one, whose point lies in a block that is
+  // near the surface. The other points have the sign of all points next to them.
+  template <class Visit>
+  void for_near_points(int first, int y, int z, const Visit& visit) const {
+    for (int x0 = 0; x0 < points_[0]; x0 += kBlock)
+      if (near_[block(x0, y, z)])
+        for (int x = std::max(x0, first); x < std::min(x0 + kBlock, points_[0] - 1); ++x) visit(x);
+  }
+
   void sample() {
     for (int z = 0; z < points_[2]; z += kCoarse)
       for (int y = 0; y < points_[1]; y += kCoarse)
@@ -67,6 +83,7 @@ class SurfaceNets {
     const float half = 0.5f * float(size - 1);
     const float middle = field_(point(float(x0) + half, float(y0) + half, float(z0) + half));
     const bool far = std::abs(middle) > kSlope * reach * cell_;
+    if (!far && size == kBlock) near_[block(x0, y0, z0)] = 1;
     const int step = far || size == kBlock ? 1 : kBlock;
     for (int z = z0; z < z0 + size; z += step)
       for (int y = y0; y < y0 + size; y += step)
@@ -108,7 +125,7 @@ class SurfaceNets {
   // Adds the faces of the lattice edges in plane z (along x and y) and of the edges that leave it (along z).
   void add_faces(const std::vector<uint32_t>& below, const std::vector<uint32_t>& above, int z) {
     for (int y = 1; y + 1 < points_[1]; ++y)
-      for (int x = 1; x + 1 < points_[0]; ++x) {
+      for_near_points(1, y, z, [&](int x) {
         const bool here = value(x, y, z) < 0;
         if (here != (value(x + 1, y, z) < 0))
           add_quad(below[slot(x, y - 1)], below[slot(x, y)], above[slot(x, y)], above[slot(x, y - 1)], !here);
@@ -117,7 +134,7 @@ class SurfaceNets {
         if (here != (value(x, y, z + 1) < 0))
           add_quad(above[slot(x - 1, y - 1)], above[slot(x, y - 1)], above[slot(x, y)], above[slot(x - 1, y)],
                    !here);
-      }
+      });
   }
 
   // Adds the quad of four corners in turn. It is cut along the shorter diagonal, which follows the surface
@@ -142,6 +159,7 @@ class SurfaceNets {
   int32_t material_;
   std::array<int, 3> points_{};
   std::vector<float> values_;
+  std::vector<uint8_t> near_;  // one for each block of kBlock points a side: whether the surface may be in it
   Model model_;
 };
 
