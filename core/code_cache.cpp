@@ -56,12 +56,17 @@ void CodeCache::look_up(Cycle now) {
 void CodeCache::miss(const Asked& asked, Cycle now) {
   ++stats_.cache_misses;
   Missing* free = nullptr;
-  for (Missing& missing : missing_) {
+  uint32_t used = num_missing_;  // Entries are taken from the front, so that few are looked at.
+  for (size_t i = 0; i < missing_.size() && (used || !free); ++i) {
+    Missing& missing = missing_[i];
     if (missing.clients && missing.line == asked.line) {
       missing.clients |= 1u << asked.client;
       return;
     }
-    if (!missing.clients && !free) free = &missing;
+    if (missing.clients)
+      --used;
+    else if (!free)
+      free = &missing;
   }
   GLINT_CHECK(free, "more lines are missing than are waited for");
   *free = {asked.line, now - 1 + there_, 1u << asked.client, false, asked.traffic};
@@ -70,12 +75,14 @@ void CodeCache::miss(const Asked& asked, Cycle now) {
 }
 
 void CodeCache::send(Cycle now) {
-  if (num_unsent_ == 0) return;
   const auto sectors = uint8_t((1u << line_bytes_ / mem::kSectorBytes) - 1);
-  for (Missing& missing : missing_) {
-    if (!missing.clients || missing.sent || missing.send_at > now) continue;
-    if (!l1_.access(now, mem::Client::Code,
-                    {missing.line, sectors, false, missing.traffic, mem::Token(&missing - missing_.data())}))
+  uint32_t unseen = num_unsent_;
+  for (size_t i = 0; unseen; ++i) {
+    Missing& missing = missing_[i];
+    if (!missing.clients || missing.sent) continue;
+    --unseen;
+    if (missing.send_at > now) continue;
+    if (!l1_.access(now, mem::Client::Code, {missing.line, sectors, false, missing.traffic, mem::Token(i)}))
       return;
     missing.sent = true;
     --num_unsent_;
@@ -103,9 +110,12 @@ Cycle CodeCache::next_event(Cycle now) const {
   if (!asked_.empty()) next = std::max(asked_.front().at + 1, lookup_free_);
   if (!hits_.empty()) next = std::min(next, hits_.front().at);
   if (!fills_.empty()) next = std::min(next, fills_.front().at);
-  if (num_unsent_)
-    for (const Missing& missing : missing_)
-      if (missing.clients && !missing.sent) next = std::min(next, missing.send_at);
+  uint32_t unseen = num_unsent_;
+  for (size_t i = 0; unseen; ++i)
+    if (const Missing& missing = missing_[i]; missing.clients && !missing.sent) {
+      next = std::min(next, missing.send_at);
+      --unseen;
+    }
   return next == kNever ? kNever : std::max(next, now + 1);
 }
 
