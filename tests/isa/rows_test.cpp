@@ -1,6 +1,8 @@
 // Tests what follows from the rows of the op table alone: examples, masks, and equal bits on all SIMD paths.
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <bit>
+#include <map>
 #include <set>
 #include <string>
 
@@ -50,12 +52,23 @@ std::vector<Path> paths() {
   return out;
 }
 
+// Returns the words of every predicate and register, as WarpFixture::snapshot() orders them. Thousands of ops
+// run on the words of each seed, so that they are kept.
+const std::vector<uint32_t>& random_words(uint64_t seed) {
+  static std::map<uint64_t, std::vector<uint32_t>> kept;
+  std::vector<uint32_t>& words = kept[seed];
+  if (!words.empty()) return words;
+  for (int p = 0; p < kNumPredicates; ++p) words.push_back(LaneMask(next_random(seed)));
+  for (int i = 0; i < WarpFixture::kRows * kLanes; ++i) words.push_back(test_word(seed));
+  return words;
+}
+
 // Fills every register and predicate, runs the op, and returns all registers and predicates.
 std::vector<uint32_t> run_random(const OpRow& row, uint16_t op, uint64_t seed, LaneMask exec) {
-  WarpFixture w;
-  for (LaneMask& p : w.warp.predicate) p = LaneMask(next_random(seed));
-  for (int r = 0; r < WarpFixture::kRows; ++r)
-    for (int lane = 0; lane < kLanes; ++lane) w.at(r, lane) = test_word(seed);
+  static WarpFixture w;
+  const std::vector<uint32_t>& words = random_words(seed);
+  std::copy_n(words.begin(), kNumPredicates, w.warp.predicate.begin());
+  std::copy(words.begin() + kNumPredicates, words.end(), w.warp.bank[0]);
   w.warp.exec = exec;
   row.run(w.warp, spread(row, op), row);
   return w.snapshot();
