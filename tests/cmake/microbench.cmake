@@ -1,4 +1,4 @@
-glint_test(timing_op_times LINKS glint::pipeline SOURCES timing/op_times_test.cpp)
+glint_test(timing_op_times WITH machine LINKS glint::pipeline SOURCES timing/op_times_test.cpp)
 if(GLINT_ZSTD_INCLUDE AND GLINT_ZSTD)
   glint_test(ptx_h200 FOLDER ptx LINKS glint::pipeline ${GLINT_ZSTD} SOURCES ptx/h200_test.cpp)
   target_include_directories(test_ptx_h200 PRIVATE ${GLINT_ZSTD_INCLUDE})

@@ -4,5 +4,5 @@ glint_test(picture LINKS test_agreement glint::pipeline glint_reference
   SOURCES picture/alpha_test.cpp picture/picture_test.cpp)
 glint_test(picture_scenes LINKS test_agreement glint::pipeline glint_reference
   SOURCES picture/every_scene_test.cpp picture/instancing_test.cpp)
-glint_test(picture_software LINKS glint::pipeline SOURCES picture/software_soup_test.cpp picture/software_traversal_test.cpp)
-glint_test(unit_pipeline FOLDER unit/pipeline LINKS glint::pipeline)
+glint_test(picture_software WITH machine LINKS glint::pipeline SOURCES picture/software_soup_test.cpp picture/software_traversal_test.cpp)
+glint_test(unit_pipeline WITH machine FOLDER unit/pipeline LINKS glint::pipeline)

@@ -1,6 +1,6 @@
 # Adds tests of printing from shaders, contraction, the cache of compiled shaders, and the command line for them.
 if(TARGET glint::pipeline AND TARGET glint::frontend)
-  glint_test(print LINKS glint::pipeline SOURCES print/shader_run.cpp print/cache_test.cpp print/contract_test.cpp print/message_test.cpp
+  glint_test(print WITH shaders LINKS glint::pipeline SOURCES print/shader_run.cpp print/cache_test.cpp print/contract_test.cpp print/message_test.cpp
     print/print_log_test.cpp print/print_test.cpp)
 endif()
 if(TARGET glint)

@@ -1,6 +1,6 @@
-glint_test(threads LINKS glint::pipeline
+glint_test(threads WITH machine LINKS glint::pipeline
   SOURCES threads/cell_pool_test.cpp threads/machine_test.cpp threads/memory_view_test.cpp)
-glint_test(threads_mechanisms LINKS glint::pipeline SOURCES threads/mechanisms_test.cpp)
+glint_test(threads_mechanisms WITH machine LINKS glint::pipeline SOURCES threads/mechanisms_test.cpp)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(TARGET glint)
   foreach(suite threads stuck impossible microbench)

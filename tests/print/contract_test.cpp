@@ -12,7 +12,7 @@
 namespace glint::test {
 namespace {
 
-uint32_t bits(float x) {
+uint32_t bits_of(float x) {
   return std::bit_cast<uint32_t>(x);
 }
 
@@ -44,11 +44,11 @@ void check(const std::string& expression, float (*fused)(float, float, float, fl
     for (float& x : v) x = near_one(random);
     const float expected[2] = {apart(v[0], v[1], v[2], v[3]),
                                (precise ? apart : fused)(v[0], v[1], v[2], v[3])};
-    different += bits(fused(v[0], v[1], v[2], v[3])) != bits(expected[0]);
+    different += bits_of(fused(v[0], v[1], v[2], v[3])) != bits_of(expected[0]);
     for (const int k : {0, 1}) {
-      runs[k].words = {bits(v[0]), bits(v[1]), bits(v[2]), bits(v[3]), 0};
+      runs[k].words = {bits_of(v[0]), bits_of(v[1]), bits_of(v[2]), bits_of(v[3]), 0};
       run_program(runs[k], programs[k]);
-      CHECK(runs[k].words[4] == bits(expected[k]));
+      CHECK(runs[k].words[4] == bits_of(expected[k]));
     }
   }
   CHECK(different > 5);  // otherwise the loop has shown nothing

@@ -16,10 +16,6 @@ namespace {
 
 using Catch::Contains;
 
-uint32_t bits(float x) {
-  return std::bit_cast<uint32_t>(x);
-}
-
 // Runs `lab` anew for every machine and register limit, and calls `check` after each run.
 void each_machine(const ComputeLab& fresh, const std::function<void(ComputeLab&)>& check) {
   for (const LabOptions& options : compute_lab_options()) {

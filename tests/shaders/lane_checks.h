@@ -12,9 +12,6 @@
 
 namespace glint::test {
 
-inline uint32_t bits(float value) {
-  return std::bit_cast<uint32_t>(value);
-}
 using Row = std::vector<uint32_t>;  // a lane's words from the first on; missing words are not checked
 
 inline void check_lanes(RayLab& lab, const std::function<Row(uint32_t lane)>& expected) {

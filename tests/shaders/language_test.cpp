@@ -123,7 +123,7 @@ std::vector<uint32_t> counting(uint32_t words) {
 
 // Gives m[column][row] of a matrix whose words count from `first`, with `stride` words from one column (or
 // row) to the next.
-struct Words {
+struct MatrixWords {
   uint32_t first, stride;
   bool by_rows;
   float at(uint32_t column, uint32_t row) const {
@@ -133,14 +133,15 @@ struct Words {
 
 Row matrices(uint32_t lane) {
   const uint32_t i = lane & 3;
-  const Words rows{0, 4, true}, columns{0, 4, false}, affine_rows{16, 4, true}, affine_columns{16, 4, false};
+  const MatrixWords rows{0, 4, true}, columns{0, 4, false}, affine_rows{16, 4, true},
+      affine_columns{16, 4, false};
   // mat2x3 has 2 columns of 3 rows. In row-major std430 it has 3 rows of 8 bytes, and in column-major std140
   // it has 2 columns of 16.
-  const auto small_rows = [](uint32_t k) { return Words{28 + 6 * k, 2, true}; };
-  const auto small_columns = [](uint32_t k) { return Words{32 + 8 * k, 4, false}; };
+  const auto small_rows = [](uint32_t k) { return MatrixWords{28 + 6 * k, 2, true}; };
+  const auto small_columns = [](uint32_t k) { return MatrixWords{32 + 8 * k, 4, false}; };
   const float v[4] = {1, 2, 3, float(i)}, weight[4] = {1, 10, 100, 1000};
   Row row;
-  for (const Words& m : {rows, columns}) {
+  for (const MatrixWords& m : {rows, columns}) {
     float sum = 0;
     for (uint32_t r = 0; r < 4; ++r) {
       float part = 0;
@@ -162,10 +163,11 @@ Row matrices(uint32_t lane) {
   // written_rows.
   const auto frame = [](uint32_t f) { return 1 + 25 * f; };
   const uint32_t f = frame(i & 1);
-  row.push_back(bits(Words{f, 3, false}.at(2, 1) + float(f + 9 + 2 + 1) * 100 + float(f + 12 + 1) * 10000));
-  row.push_back(bits(Words{f + 13 + 6, 3, false}.at(1, 2) +
-                     Words{frame(1) + 13 + 6 * (i & 1), 3, false}.at(0, i % 3) * 100));
-  row.push_back(bits(Words{51, 3, true}.at(i % 3, 1)));
+  row.push_back(
+      bits(MatrixWords{f, 3, false}.at(2, 1) + float(f + 9 + 2 + 1) * 100 + float(f + 12 + 1) * 10000));
+  row.push_back(bits(MatrixWords{f + 13 + 6, 3, false}.at(1, 2) +
+                     MatrixWords{frame(1) + 13 + 6 * (i & 1), 3, false}.at(0, i % 3) * 100));
+  row.push_back(bits(MatrixWords{51, 3, true}.at(i % 3, 1)));
   const auto look = [&](uint32_t c, uint32_t r) {
     return (c == i ? 9.0f : rows.at(c, r)) + (c == 1 && r == i ? 1.0f : 0.0f);
   };

@@ -2,6 +2,7 @@
 // both machines.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <bit>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -13,6 +14,10 @@
 #include "pipeline/params.h"
 
 namespace glint::test {
+
+inline uint32_t bits(float x) {
+  return std::bit_cast<uint32_t>(x);
+}
 
 // Names shaders by their files in tests/shaders/glsl. An empty name is a null shader.
 struct LabShaders {

@@ -33,7 +33,7 @@ void both(Eight& a, Eight& b) {
   a[1] = b[0];
 }
 
-std::array<uint32_t, 19> expected(uint32_t lane) {
+std::array<uint32_t, 19> expected_words(uint32_t lane) {
   Eight a, b;
   for (uint32_t i = 0; i < 8; ++i) a[i] = lane + i, b[i] = lane * i;
   twice(a, lane);
@@ -60,7 +60,7 @@ TEST_CASE(
     lab.run(options);
     for (uint32_t lane = 0; lane < 32; ++lane) {
       const auto row = std::span(lab.buffers[0]).subspan(lane * 32, 19);
-      const auto words = expected(lane);
+      const auto words = expected_words(lane);
       CAPTURE(lane);
       CHECK(std::vector<uint32_t>(row.begin(), row.end()) ==
             std::vector<uint32_t>(words.begin(), words.end()));

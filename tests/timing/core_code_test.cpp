@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "tests/support/catch.h"
-#include "tests/unit/core/one_core.h"
+#include "tests/timing/core_programs.h"
 
 namespace glint::core {
 namespace {
@@ -28,10 +28,6 @@ Params params_with_constants() {
 void add_line(Code& code, int n) {
   for (int i = 0; i < n; ++i) code.add("add.u32", {reg(i + 1), reg(0), reg(0)});
   code.add("exit");
-}
-
-uint64_t stall(const OneCore& core, Stall reason) {
-  return core.stats().stalls.count(reason);
 }
 
 }  // namespace

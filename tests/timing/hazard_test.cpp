@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "tests/support/catch.h"
-#include "tests/unit/core/one_core.h"
+#include "tests/timing/core_programs.h"
 
 namespace glint::core {
 namespace {
@@ -20,10 +20,6 @@ Address first_buffer() {
 void add_address(Code& code) {
   code.add("mad.wide.u32",
            {reg(2), special(Special::LaneId), code.constant(4), code.constant64(first_buffer())});
-}
-
-uint64_t stall(const OneCore& core, Stall reason) {
-  return core.stats().stalls.count(reason);
 }
 
 // Runs with a buffer in memory.

@@ -10,7 +10,7 @@
 namespace glint::core {
 namespace {
 
-constexpr Cycle kMemory = 20;
+constexpr Cycle kTexelLatency = 20;
 
 Params unit_params(TextureParams texture) {
   Params params;
@@ -20,7 +20,8 @@ Params unit_params(TextureParams texture) {
   return params;
 }
 
-void take(Lsu& lsu, uint32_t scheduler, Cycle now, bool texture, uint32_t lines = 1, uint32_t samples = 0) {
+void take_accesses(Lsu& lsu, uint32_t scheduler, Cycle now, bool texture, uint32_t lines = 1,
+                   uint32_t samples = 0) {
   REQUIRE(lsu.can_take(scheduler, texture));
   MemoryAccess& access = lsu.take(scheduler, now, texture);
   access.write = false;
@@ -33,12 +34,12 @@ void take(Lsu& lsu, uint32_t scheduler, Cycle now, bool texture, uint32_t lines 
 TEST_CASE("textures that wait keep no place from loads, where they have a queue") {
   for (const uint32_t queue : {0u, 3u}) {
     CAPTURE(queue);
-    mem::FixedLatencyMemory memory(kMemory);
+    mem::FixedLatencyMemory memory(kTexelLatency);
     Params params = unit_params({0, queue, false});
     params.lsu.queue = 3;
     Lsu lsu(params, memory);
 
-    for (int i = 0; i < 3; ++i) take(lsu, 0, 0, true);
+    for (int i = 0; i < 3; ++i) take_accesses(lsu, 0, 0, true);
     CHECK_FALSE(lsu.can_take(0, true));
     CHECK(lsu.can_take(0, false) == (queue > 0));
     CHECK(lsu.can_take(1, true));
@@ -49,10 +50,10 @@ TEST_CASE("textures that wait keep no place from loads, where they have a queue"
 
 TEST_CASE("a load is taken in the cycle of a texture, where that has a queue of its own") {
   for (const uint32_t queue : {0u, 3u}) {
-    mem::FixedLatencyMemory memory(kMemory);
+    mem::FixedLatencyMemory memory(kTexelLatency);
     Lsu lsu(unit_params({0, queue, true}), memory);
-    take(lsu, 0, 0, true);
-    take(lsu, 0, 0, false);
+    take_accesses(lsu, 0, 0, true);
+    take_accesses(lsu, 0, 0, false);
     // In one queue, the load is taken when the scheduler's address generation is free again.
     CHECK(completions(lsu, 1) == std::vector<Cycle>{32, queue ? 32u : 36u});
   }
@@ -60,20 +61,20 @@ TEST_CASE("a load is taken in the cycle of a texture, where that has a queue of 
 
 TEST_CASE("lines of textures and of loads are asked for in the same cycle, where there are two doors") {
   for (const bool own : {false, true}) {
-    mem::FixedLatencyMemory memory(kMemory);
+    mem::FixedLatencyMemory memory(kTexelLatency);
     Lsu lsu(unit_params({0, 5, own}), memory);
-    take(lsu, 0, 0, true, 4);
-    take(lsu, 1, 0, false, 4);
+    take_accesses(lsu, 0, 0, true, 4);
+    take_accesses(lsu, 1, 0, false, 4);
     // Whole lines take a door for two cycles each.
     CHECK(completions(lsu, 1) == (own ? std::vector<Cycle>{38, 38} : std::vector<Cycle>{44, 46}));
   }
 }
 
 TEST_CASE("the two doors still share the L1's ports") {
-  mem::FixedLatencyMemory memory(kMemory, 1);
+  mem::FixedLatencyMemory memory(kTexelLatency, 1);
   Lsu lsu(unit_params({0, 5, true}), memory);
-  take(lsu, 0, 0, true);
-  take(lsu, 1, 0, false);
+  take_accesses(lsu, 0, 0, true);
+  take_accesses(lsu, 1, 0, false);
   CHECK(completions(lsu, 1) == std::vector<Cycle>{32, 33});
   CHECK(memory.refused() == 1);
 }
@@ -87,10 +88,10 @@ TEST_CASE("samples take the texture units a cycle for as many as there are units
   for (const auto& [rate, samples, first, second] :
        {Case{4, 16, 35, 39}, {4, 17, 36, 41}, {4, 32, 39, 47}, {4, 4, 32, 36}, {0, 32, 32, 36}}) {
     CAPTURE(rate, samples);
-    mem::FixedLatencyMemory memory(kMemory);
+    mem::FixedLatencyMemory memory(kTexelLatency);
     Lsu lsu(unit_params({rate, 5, true}), memory);
-    take(lsu, 0, 0, true, 1, samples);
-    take(lsu, 1, 0, true, 1, samples);
+    take_accesses(lsu, 0, 0, true, 1, samples);
+    take_accesses(lsu, 1, 0, true, 1, samples);
     CHECK(completions(lsu, 1) == std::vector<Cycle>{first, second});
   }
 }

@@ -18,14 +18,14 @@
 namespace glint::golden {
 namespace {
 
-std::string read_file(const std::filesystem::path& path) {
+std::string content_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw UserError(fmt::format("cannot read {}", path.string()));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string unpacked(const std::filesystem::path& path) {
-  const std::string packed = read_file(path);
+  const std::string packed = content_of(path);
   std::string out(ZSTD_getFrameContentSize(packed.data(), packed.size()), '\0');
   if (ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size()) != out.size())
     throw UserError(fmt::format("{} is damaged", path.string()));
@@ -35,7 +35,7 @@ std::string unpacked(const std::filesystem::path& path) {
 // Returns the contents of a file, or of its compressed form if only that is present.
 std::string contents(const std::filesystem::path& path) {
   const std::filesystem::path packed = path.string() + ".zst";
-  return std::filesystem::exists(packed) ? unpacked(packed) : read_file(path);
+  return std::filesystem::exists(packed) ? unpacked(packed) : content_of(path);
 }
 
 uint32_t bytes_of(const std::string& type) {
@@ -59,7 +59,7 @@ uint64_t Recording::value(const std::string& data, const Array& array, uint32_t 
 }
 
 Recording load_folder(const std::filesystem::path& folder) {
-  const nlohmann::json manifest = nlohmann::json::parse(read_file(folder / "manifest.json"));
+  const nlohmann::json manifest = nlohmann::json::parse(content_of(folder / "manifest.json"));
   Recording out;
   out.lanes = manifest["lanes"];
   out.inputs = contents(folder / "inputs.bin");
@@ -73,7 +73,7 @@ Recording load_extract(const std::filesystem::path& folder) {
   Recording out;
   out.lanes = 32;
   const std::string lanes = unpacked(folder / "lanes.bin.zst");
-  const std::string text = read_file(folder / "forms.txt");
+  const std::string text = content_of(folder / "forms.txt");
   std::istringstream forms(text);
   size_t at = 0;
   for (std::string line; std::getline(forms, line);) {

@@ -32,10 +32,10 @@ Outcome run_one(const std::string& op, bool wide, uint64_t old, uint64_t b, uint
   const auto memory = launch.memory.view<uint64_t>(launch.buffer, 2);
   return {memory[1], memory[0]};
 }
-uint32_t bits(float x) {
+uint32_t bits_of(float x) {
   return std::bit_cast<uint32_t>(x);
 }
-uint64_t bits(double x) {
+uint64_t bits_of(double x) {
   return std::bit_cast<uint64_t>(x);
 }
 
@@ -66,15 +66,21 @@ TEST_CASE("atomics of 16 bits leave the neighbouring half word alone") {
 }
 
 TEST_CASE("float atomics add, and take the number of a number and a NaN") {
-  CHECK(run_one("atom.global.add.f32", false, bits(1.5f), bits(2.0f)) == Outcome{bits(1.5f), bits(3.5f)});
-  CHECK(run_one("atom.add.f64", true, bits(1.5), bits(-2.0)) == Outcome{bits(1.5), bits(-0.5)});
-  CHECK(run_one("atom.global.min.f32", false, bits(-0.0f), bits(0.0f)) == Outcome{bits(-0.0f), bits(-0.0f)});
-  CHECK(run_one("atom.global.max.f32", false, bits(-0.0f), bits(0.0f)) == Outcome{bits(-0.0f), bits(0.0f)});
-  CHECK(run_one("atom.global.min.f32", false, bits(-1.0f), bits(-2.0f)) == Outcome{bits(-1.0f), bits(-2.0f)});
-  CHECK(run_one("atom.global.max.f64", true, bits(-1.0), bits(3.0)) == Outcome{bits(-1.0), bits(3.0)});
-  CHECK(run_one("atom.global.max.f32", false, 0x7fc0'0000, bits(-2.0f)) == Outcome{0x7fc0'0000, bits(-2.0f)});
-  CHECK(run_one("atom.global.min.f64", true, bits(2.0), 0xfff8'0000'0000'0001) ==
-        Outcome{bits(2.0), bits(2.0)});
+  CHECK(run_one("atom.global.add.f32", false, bits_of(1.5f), bits_of(2.0f)) ==
+        Outcome{bits_of(1.5f), bits_of(3.5f)});
+  CHECK(run_one("atom.add.f64", true, bits_of(1.5), bits_of(-2.0)) == Outcome{bits_of(1.5), bits_of(-0.5)});
+  CHECK(run_one("atom.global.min.f32", false, bits_of(-0.0f), bits_of(0.0f)) ==
+        Outcome{bits_of(-0.0f), bits_of(-0.0f)});
+  CHECK(run_one("atom.global.max.f32", false, bits_of(-0.0f), bits_of(0.0f)) ==
+        Outcome{bits_of(-0.0f), bits_of(0.0f)});
+  CHECK(run_one("atom.global.min.f32", false, bits_of(-1.0f), bits_of(-2.0f)) ==
+        Outcome{bits_of(-1.0f), bits_of(-2.0f)});
+  CHECK(run_one("atom.global.max.f64", true, bits_of(-1.0), bits_of(3.0)) ==
+        Outcome{bits_of(-1.0), bits_of(3.0)});
+  CHECK(run_one("atom.global.max.f32", false, 0x7fc0'0000, bits_of(-2.0f)) ==
+        Outcome{0x7fc0'0000, bits_of(-2.0f)});
+  CHECK(run_one("atom.global.min.f64", true, bits_of(2.0), 0xfff8'0000'0000'0001) ==
+        Outcome{bits_of(2.0), bits_of(2.0)});
 }
 
 TEST_CASE("the adder of global memory flushes subnormals, that of shared memory keeps them") {
