@@ -136,8 +136,10 @@ Cycle CoreCell::next_event(Cycle from) const {
   Cycle next = warps_.alarms().next(from);
   if (next <= from) return from;
   if (from == 0) return finished() ? next : from;
-  if (code_) next = std::min(next, code_->next_event(from - 1));
-  if (reorder_) next = std::min(next, reorder_->next_event(from - 1));
+  if (code_) [[unlikely]]
+    next = std::min(next, code_->next_event(from - 1));
+  if (reorder_) [[unlikely]]
+    next = std::min(next, reorder_->next_event(from - 1));
   next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1)});
   return std::max(next, from);
 }
@@ -152,11 +154,13 @@ void CoreCell::step(Cycle now) {
   if (lsu_first) lsu_.tick(now);
   rt_.tick(now);
   if (!lsu_first) lsu_.tick(now);
-  if (code_) code_->tick(now, warps_, constants_);
+  if (code_) [[unlikely]]
+    code_->tick(now, warps_, constants_);
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
   memory_.take_answers(now);
   rays_.take_answers(now);
-  if (reorder_) reorder_->tick(now);
+  if (reorder_) [[unlikely]]
+    reorder_->tick(now);
   issue(now);
   active_until_ = now + 1;
   if (parking_) [[unlikely]]

@@ -34,13 +34,15 @@ class CoreCounts {
   // Counts an instruction that a warp of scheduler `scheduler` has issued.
   void issue(uint32_t scheduler, const IssueRow& row, const exec::Issued& issued) {
     const auto lanes = uint64_t(num_lanes(issued.lanes));
-    if (profile) profile->issue(scheduler, issued.pc, lanes);
+    if (profile) [[unlikely]]
+      profile->issue(scheduler, issued.pc, lanes);
     ++progress;
     ++stats.instructions;
     ByPc& counts = by_pc_[issued.pc];
     ++counts.issues;
     counts.lanes += lanes;
-    if (row.is_conditional && issued.lanes != 0 && issued.lanes != issued.active) ++stats.divergent_branches;
+    if (row.is_conditional) [[unlikely]]
+      stats.divergent_branches += issued.lanes != 0 && issued.lanes != issued.active;
   }
   // Counts that the instruction at `pc` took `duration` cycles from its issue to its completion.
   void end(uint32_t pc, uint64_t duration) { by_pc_[pc].cycles += duration; }

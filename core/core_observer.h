@@ -48,7 +48,8 @@ class CoreObservers {
   bool empty() const { return list_.empty(); }
   template <class Event>
   void tell(Event&& event) const {
-    for (CoreObserver* observer : list_) event(*observer);
+    if (!list_.empty()) [[unlikely]]
+      for (CoreObserver* observer : list_) event(*observer);
   }
 
  private:

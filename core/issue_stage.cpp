@@ -77,11 +77,13 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
   if (row.pipe == Pipe::Const && units_.constants.is_timed() && issued.lanes)
     return units_.constants.start(slot, row, issued, now);
   WarpSlot& at = core_.warps[slot];
-  core_.counts.end(issued.pc, late + row.latency + (row.is_whole ? slow_.latency : 0));
-  if (row.is_sequence)
+  core_.counts.end(issued.pc, late + row.latency);
+  if (row.is_whole) [[unlikely]]
+    core_.counts.end(issued.pc, slow_.latency);
+  if (row.is_sequence) [[unlikely]]
     start_sequence(at, row, issued.pc, now);
   else
-    at.scoreboard.set(row, core_.table.defs(row), {now + late + row.latency, row.wait},
+    at.scoreboard.set(row, core_.table, {now + late + row.latency, row.wait},
                       row.alternates ? Pipe::Count : row.pipe);
 }
 
@@ -148,19 +150,21 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
   if (row.is_whole) [[unlikely]]
     look_for_slow_path(at.warp, row);
   const exec::Issued issued = core_.executor.execute(at.warp, now);
-  if (core_.executor.fault()) {
+  if (core_.executor.fault()) [[unlikely]] {
     fault_ = core_.executor.fault();
     return;
   }
   core_.observers.tell([&](CoreObserver& observer) { observer.issue(now, slot, issued); });
   core_.counts.issue(scheduler.index(), row, issued);
   const Cycle late = row.pipe != Pipe::Memory ? scheduler.occupy(row.pipe, now, row.interval) : 0;
-  if (core_.params.register_file.banks) scheduler.banks.read(core_.table.bank_reads(issued.pc), now);
+  if (core_.params.register_file.banks) [[unlikely]]
+    scheduler.banks.read(core_.table.bank_reads(issued.pc), now);
   hand_over(slot, row, issued, late, now);
-  if (issued.finished) units_.barriers.end_warp(*at.warp.block, now);
-  if (at.warp.instructions > core_.params.instruction_budget)
+  if (issued.finished) [[unlikely]]
+    units_.barriers.end_warp(*at.warp.block, now);
+  if (at.warp.instructions > core_.params.instruction_budget) [[unlikely]]
     fault_ = no_end_in_sight(core_.world, at.warp, issued.pc, core_.params.instruction_budget);
-  else if (issued.finished)
+  else if (issued.finished) [[unlikely]]
     units_.memory.retire(slot, now);
   else
     prepare_next(at, now);
@@ -169,9 +173,11 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
 void IssueStage::run(Scheduler& scheduler, Cycle now) {
   core_.counts.spend(scheduler, now);
   uint64_t ready = scheduler.find_ready(now, doors_);
-  if (core_.params.register_file.banks) ready = leave_out_bank_conflicts(scheduler, ready, now);
+  if (core_.params.register_file.banks) [[unlikely]]
+    ready = leave_out_bank_conflicts(scheduler, ready, now);
   if (!ready) {
-    if (core_.counts.profile) core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));
+    if (core_.counts.profile) [[unlikely]]
+      core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));
     return;
   }
   issue(slot_of(scheduler, scheduler.pick(ready, now, doors_)), now);

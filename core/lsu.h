@@ -71,9 +71,9 @@ class Lsu {
     if (is_due(now)) run(now);
   }
   // Returns whether tick() would do anything.
-  bool is_due(Cycle now) const { return now >= due_ || l1_.has_answer(now, mem::Client::Lsu); }
+  bool is_due(Cycle now) const { return (now >= due_) | l1_.has_answer(now, mem::Client::Lsu); }
   // Returns whether completed() or accepted() has an access.
-  bool has_news() const { return num_accepted_ != 0 || !completed_.empty(); }
+  bool has_news() const { return (num_accepted_ != 0) | !completed_.empty(); }
   std::span<const uint32_t> completed() const { return {completed_.data(), completed_.size()}; }
   // Returns the accesses that have left their queues in this cycle.
   std::span<const uint32_t> accepted() const { return {accepted_.data(), num_accepted_}; }

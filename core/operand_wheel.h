@@ -26,7 +26,8 @@ class OperandWheel {
   // Notes that the operands of `warp` come in cycle `at`. kNever: nobody knows it yet.
   void set(uint32_t warp, Cycle at) {
     const uint64_t bit = uint64_t{1} << warp;
-    if (missing_ & bit) take_out(warp);
+    if (missing_ & bit) [[unlikely]]
+      take_out(warp);
     at_[warp] = at;
     missing_ = at > now_ ? missing_ | bit : missing_ & ~bit;
     if (at > now_) put_in(warp);
@@ -34,21 +35,10 @@ class OperandWheel {
 
   // Goes on to cycle `now`, which may not be before that of the last call.
   void advance(Cycle now) {
-    const Cycle elapsed = now - now_;
-    if (elapsed == 1 && next_far_ == kNever) [[likely]]
-      return advance();
-    if (elapsed == 0) return;
-    uint64_t come = from_next();
-    if (elapsed < kCycles) come &= (uint64_t{1} << elapsed) - 1;
-    for (; come; come &= come - 1) {
-      const auto cycle = size_t((now_ + 1 + Cycle(std::countr_zero(come))) % kCycles);
-      missing_ &= ~due_[cycle];
-      due_[cycle] = 0;
-      cycles_ &= ~(uint64_t{1} << cycle);
-    }
-    now_ = now;
-    if (next_far_ != kNever && next_far_ <= now + kCycles) [[unlikely]]
-      bring_near();
+    if (now - now_ == 1 && next_far_ == kNever) [[likely]]
+      advance();
+    else if (now != now_)
+      skip_to(now);
   }
 
   // Returns a cycle before which no further operands come: the exact one, unless all warps wait for longer
@@ -61,6 +51,21 @@ class OperandWheel {
   // Returns the cycles with warps: bit i stands for the cycle i + 1 after the present one.
   uint64_t from_next() const { return std::rotr(cycles_, int((now_ + 1) % kCycles)); }
 
+  // Goes on to a later cycle.
+  [[gnu::noinline]] void skip_to(Cycle now) {
+    const Cycle elapsed = now - now_;
+    uint64_t come = from_next();
+    if (elapsed < kCycles) come &= (uint64_t{1} << elapsed) - 1;
+    for (; come; come &= come - 1) {
+      const auto cycle = size_t((now_ + 1 + Cycle(std::countr_zero(come))) % kCycles);
+      missing_ &= ~due_[cycle];
+      due_[cycle] = 0;
+      cycles_ &= ~(uint64_t{1} << cycle);
+    }
+    now_ = now;
+    if (next_far_ != kNever && next_far_ <= now + kCycles) [[unlikely]]
+      bring_near();
+  }
   // Goes on by one cycle while no warp lies apart.
   void advance() {
     const auto cycle = size_t(++now_ % kCycles);

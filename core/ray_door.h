@@ -21,8 +21,11 @@ class RayDoor {
   void start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
   // Lets warps go on whose rays have all stopped by `now`.
   void take_answers(Cycle now) {
-    while (const auto slot = rt_.pop_completion(now))
+    while (rt_.has_completion()) {
+      const auto slot = rt_.pop_completion(now);
+      if (!slot) return;
       if (!parking_ || parking_->come_back(*slot, now)) complete(*slot, now, 0);
+    }
   }
   // Lets warps leave their places, and others return to these. It is called at the end of a cycle, and only
   // when there is parking.

@@ -48,8 +48,11 @@ void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doo
   Cycle next = operands_.next();
   if (at_pipes) {
     reason_ = Stall::MathThrottle;
-    for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe)
-      next = std::min(next, at_pipes & needs_pipe_[pipe] ? pipe_free_[pipe] : kNever);
+    // There is no branch, because which pipes are busy cannot be foreseen.
+    for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe) {
+      const auto nobody = Cycle{(at_pipes & needs_pipe_[pipe]) == 0};
+      next = std::min(next, pipe_free_[pipe] | (Cycle{0} - nobody));
+    }
   } else if (at_doors) {
     reason_ = at_doors & needs_door_[size_t(Door::Lsu)]       ? Stall::LsuThrottle
               : at_doors & needs_door_[size_t(Door::Texture)] ? Stall::TexThrottle

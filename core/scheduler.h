@@ -77,7 +77,7 @@ class Scheduler {
     needs_pipe_[size_t(pipe_[warp])] &= ~bit;
     needs_pipe_[size_t(next.pipe)] |= bit;
     pipe_[warp] = next.pipe;
-    if (door_[warp] != next.door) {
+    if (door_[warp] != next.door) [[unlikely]] {
       needs_door_[size_t(door_[warp])] &= ~bit;
       needs_door_[size_t(next.door)] |= bit;
       door_[warp] = next.door;

@@ -83,13 +83,13 @@ class Executor {
     const uint32_t pc = warp.simt.pc;
     const Step& step = world_.image->code[pc];
     LaneMask exec = warp.simt.active;
-    if (step.inst.guard != isa::kNoGuard) {
+    if (step.inst.guard != isa::kNoGuard) [[unlikely]] {
       const LaneMask guard = warp.regs.predicate[step.inst.guard & (isa::kNumPredicates - 1)];
       exec &= step.inst.guard & isa::kGuardNegate ? ~guard : guard;
     }
     warp.regs.exec = exec;
     Issued issued{pc, &step.inst, step.row, exec, warp.simt.active, false};
-    if (step.effect != isa::Effect::None || reads_clock_) {
+    if (step.effect != isa::Effect::None || reads_clock_) [[unlikely]] {
       execute_effect(warp, issued, now);
       return issued;
     }

@@ -13,7 +13,8 @@ class Ring {
   explicit Ring(size_t expected = 16) : items_(std::bit_ceil(expected < 2 ? size_t{2} : expected)) {}
 
   void push(const T& item) {
-    if (size_ > mask_) grow();
+    if (size_ > mask_) [[unlikely]]
+      grow();
     items_[(head_ + size_++) & mask_] = item;
   }
   const T& front() const { return items_[head_]; }

@@ -18,13 +18,18 @@ namespace glint::rt {
 //    their `states[lane]` until each is Done, needs a shader or has Gathered candidates. The caller keeps the
 //    storage and does not touch it meanwhile.
 //  - Exactly one completion comes back for each submit, at a later cycle.
+//  - can_accept() and has_completion() hold what set_room() and set_completion() were given last.
 //  - A warp that needs shaders is given back whole. The core runs them, decides the candidates
 //    (accept_candidate() and the others of traversal.h) and submits the lanes that still traverse again.
 class RtPort {
  public:
   virtual ~RtPort() = default;
-  virtual bool can_accept() const = 0;
+  // Returns whether the unit takes another warp. It is no virtual call, because schedulers ask in every
+  // cycle.
+  bool can_accept() const { return has_room_; }
   virtual void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) = 0;
+  // Returns whether pop_completion() may return a warp slot. The core asks in every cycle.
+  bool has_completion() const { return has_completion_; }
   // Returns a warp slot whose rays have all stopped by `now`, if there is one; each is returned once.
   virtual std::optional<uint32_t> pop_completion(Cycle now) = 0;
   // Advances to `now`. The core calls it in every cycle that it does not skip.
@@ -35,6 +40,16 @@ class RtPort {
   // Returns lines that say which warps are inside and what they wait for, for a machine that is stuck. The
   // text is empty when the unit is.
   virtual std::string describe() const { return {}; }
+
+ protected:
+  RtPort() = default;
+  RtPort(const RtPort&) = delete;
+  RtPort& operator=(const RtPort&) = delete;
+  void set_room(bool has_room) { has_room_ = has_room; }
+  void set_completion(bool has_completion) { has_completion_ = has_completion; }
+
+ private:
+  bool has_room_ = false, has_completion_ = false;
 };
 
 }  // namespace glint::rt

@@ -36,27 +36,33 @@ bool L1Cache::refuse(Refusal reason) {
 
 bool L1Cache::access(Cycle now, Client client, const Request& request) {
   GLINT_DCHECK(request.sectors != 0 && request.line % line_bytes_ == 0, "line {:#x}", request.line);
-  if (passes_l1(request.traffic) && !request.write) return read(now, client, request);
+  if (passes_l1(request.traffic) && !request.write) [[unlikely]]
+    return read(now, client, request);
   if (now != port_cycle_) port_cycle_ = now, accesses_ = 0, busy_banks_ = 0;
   if (accesses_ == params_.ports) return refuse(Refusal::Port);
   const uint64_t bank = bank_of(request.line);
-  if (busy_banks_ & bank) return refuse(Refusal::Bank);
-  if (filled_cycle_ == now && (filled_bank_ & bank) && params_.fill_takes_access)
+  if (busy_banks_ & bank) [[unlikely]]
     return refuse(Refusal::Bank);
-  const bool keeps = is_local(request.traffic) ? params_.local_write_back : params_.global_write_back;
-  const bool taken = request.traffic == Traffic::ShaderAtomic ? pass_atomic(now, client, request)
-                     : !request.write                         ? read(now, client, request)
-                     : keeps                                  ? write_back(now, request)
-                                                              : write_through(now, request);
-  if (!taken) return false;
+  if (filled_cycle_ == now && (filled_bank_ & bank) && params_.fill_takes_access) [[unlikely]]
+    return refuse(Refusal::Bank);
+  if (!take(now, client, request)) return false;
   ++accesses_;
   busy_banks_ |= bank;
   return true;
 }
 
+inline bool L1Cache::take(Cycle now, Client client, const Request& request) {
+  if (request.traffic == Traffic::ShaderAtomic) [[unlikely]]
+    return pass_atomic(now, client, request);
+  if (!request.write) [[likely]]
+    return read(now, client, request);
+  const bool keeps = is_local(request.traffic) ? params_.local_write_back : params_.global_write_back;
+  return keeps ? write_back(now, request) : write_through(now, request);
+}
+
 // Choice: a prefetch that finds its line leaves the order of replacement as it is.
 inline void L1Cache::count_read(const Request& request, uint32_t slot, uint8_t missing, uint8_t fetched) {
-  if (request.traffic != Traffic::RtPrefetch) {
+  if (request.traffic != Traffic::RtPrefetch) [[likely]] {
     if (slot != kNone) tags_.touch(slot);
     ++order_;
     ++reads_accepted_;
@@ -69,7 +75,7 @@ bool L1Cache::read(Cycle now, Client client, const Request& request) {
   const uint8_t missing =
       slot == kNone ? request.sectors : uint8_t(request.sectors & ~tags_.line(slot).valid);
   if (missing) return miss(now, client, request, slot, missing);
-  if (request.traffic != Traffic::RtPrefetch) {
+  if (request.traffic != Traffic::RtPrefetch) [[likely]] {
     answer(client, true, {now + params_.hit_latency, order_, request.token});
     latencies_.add(request.traffic, params_.hit_latency);
     prefetched_.used(slot, request.sectors);

@@ -134,19 +134,22 @@ class L1Cache final : public L1Port {
 
   // Returns whether a credit has come, or whether a packet may leave or a reply may be taken.
   bool has_work(Cycle now) const {
-    return port_.arrival() <= now || port_.next_credit() <= now ||
+    return std::min(port_.arrival(), port_.next_credit()) <= now ||
            (!miss_queue_.empty() && miss_queue_.front().ready <= now);
   }
   void run(Cycle now);
   void answer(Client client, bool is_hit, const Completion& completion);
   bool refuse(Refusal reason);
+  bool take(Cycle now, Client client, const Request& request);
   bool read(Cycle now, Client client, const Request& request);
   bool miss(Cycle now, Client client, const Request& request, uint32_t slot, uint8_t missing);
   void count_read(const Request& request, uint32_t slot, uint8_t missing, uint8_t fetched);
   bool write_through(Cycle now, const Request& request);
   bool write_back(Cycle now, const Request& request);
   uint64_t bank_of(Address line) const {
-    return uint64_t{1} << (params_.banks == 1 ? 0 : uint32_t(line >> line_shift_) % params_.banks);
+    if (params_.banks == 1) [[likely]]
+      return 1;
+    return uint64_t{1} << uint32_t(line >> line_shift_) % params_.banks;
   }
   bool pass_atomic(Cycle now, Client client, const Request& request);
   bool queue_room(uint32_t packets) const { return miss_queue_.size() + packets <= params_.miss_queue; }

@@ -52,7 +52,8 @@ class NetworkPort {
   // Returns the first cycle, not before `ready`, in which a message to `destination` can start to leave. It
   // is kNever when the message needs a credit that has not come.
   Cycle departure(Cycle ready, uint16_t destination) const {
-    if (!credits_.empty() && credits_[wiring_.routes[destination].allowance] == 0) return kNever;
+    if (!credits_.empty()) [[unlikely]]
+      if (credits_[wiring_.routes[destination].allowance] == 0) return kNever;
     return std::max({ready, send_link_.free_at(), last_credit_});
   }
   // Sends a message for which there is a credit. The message starts to leave at `now` or, behind others, when
@@ -72,7 +73,11 @@ class NetworkPort {
       ++credits_[wiring_.credit_inbox->front().allowance];
     }
   }
-  Cycle next_credit() const { return wiring_.credit_inbox ? wiring_.credit_inbox->arrival() : kNever; }
+  Cycle next_credit() const {
+    if (wiring_.credit_inbox) [[unlikely]]
+      return wiring_.credit_inbox->arrival();
+    return kNever;
+  }
 
   // Return, of the oldest message, the cycle in which its tail arrived, and the cycle in which the port has
   // received all of it. Both are kNever when there is no message.

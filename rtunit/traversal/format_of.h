@@ -113,7 +113,8 @@ void step_as(RayState& s, const std::byte* bytes) {
     visit_internal<Format>(s, bytes);
   else
     visit_leaf(s, bytes, entry, kind);
-  if (s.status != RayStatus::Traversing) return;
+  if (s.status != RayStatus::Traversing) [[unlikely]]
+    return;
   settle(s);
   if (s.table && s.status == RayStatus::Traversing && s.table->is_full()) [[unlikely]] {
     s.status = RayStatus::Gathered;

@@ -61,13 +61,14 @@ inline void end_traversal(RayState& s) {
 // next node. An entry at exactly the committed distance stays, because its primitive may win the tie.
 inline void settle(RayState& s) {
   for (;;) {
-    if (s.stack_size == s.bottom_stack_base) {
+    if (s.stack_size == s.bottom_stack_base) [[unlikely]] {
       s.bottom_stack_base = -1;
       s.base = s.ray.structure;
       s.instance_leaf = 0;
       enter_space(s.space, s.ray.origin, s.ray.direction);
     }
-    if (s.stack_size == 0) return end_traversal(s);
+    if (s.stack_size == 0) [[unlikely]]
+      return end_traversal(s);
     if (!s.rules.retest || s.stack[size_t(s.stack_size) - 1].t_enter <= s.committed.t) return;
     --s.stack_size;
   }

@@ -25,7 +25,11 @@ struct StackEntry {
 // memory, and no ray waits for the heap twice.
 class RayStack {
  public:
-  const StackEntry& operator[](size_t i) const { return i < kNear ? near_[i] : deep_[i - kNear]; }
+  const StackEntry& operator[](size_t i) const {
+    if (i < kNear) [[likely]]
+      return near_[i];
+    return deep_[i - kNear];
+  }
   void set(size_t i, const StackEntry& entry) {
     if (i < kNear) [[likely]]
       near_[i] = entry;
@@ -35,7 +39,9 @@ class RayStack {
 
   // Returns where the entries from `size` on lie, or null when the next `count` may not all lie near.
   StackEntry* near_room(size_t size, size_t count) {
-    return size + count <= kNear ? near_.data() + size : nullptr;
+    if (size + count <= kNear) [[likely]]
+      return near_.data() + size;
+    return nullptr;
   }
 
  private:

@@ -76,7 +76,8 @@ bool FetchQueue::has_ready_warp(Cycle now) {
     const bool is_new = slot.arrived >= now, ready = slot.wanting && !is_new;
     views_[i] = {ready, num_lanes(slot.wanting), slot.age, slot.arrived};
     ready_ = (ready_ & ~(uint64_t{1} << i)) | uint64_t{ready} << i;
-    if (is_new) buffer_.note_change(i);
+    if (is_new) [[unlikely]]
+      buffer_.note_change(i);
   }
   return ready_ != 0;
 }
@@ -130,7 +131,8 @@ void FetchQueue::prepare_request() {
 }
 
 bool FetchQueue::ask(Cycle now) {
-  if (!always_hits_) return l1_.access(now, mem::Client::RtUnit, request_);
+  if (!always_hits_) [[likely]]
+    return l1_.access(now, mem::Client::RtUnit, request_);
   sure_hits_.push({now + l1_.hit_latency(), request_.token});
   return true;
 }
@@ -140,7 +142,8 @@ bool FetchQueue::send(Cycle now) {
   ++stats_.requests;
   stats_.sectors += num_sectors_;
   ReadInFlight& read = reads_[sending_];
-  if (listener_) listener_->demanded(read.read.what.address + read.sent, num_bytes_, now);
+  if (listener_) [[unlikely]]
+    listener_->demanded(read.read.what.address + read.sent, num_bytes_, now);
   ++read.unanswered;
   read.sent += num_bytes_;
   if (read.sent == read.read.what.bytes)

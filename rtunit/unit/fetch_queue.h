@@ -65,7 +65,11 @@ class FetchQueue final : public RequestSource, private WantedNodes {
   mem::Token open(uint32_t slot, int lane);
   // Takes the entry back, because the L1 has refused the request.
   void cancel(mem::Token token);
-  bool is_full() const { return max_reads_ != 0 && num_reads_ >= max_reads_; }
+  bool is_full() const {
+    if (max_reads_ != 0) [[unlikely]]
+      return num_reads_ >= max_reads_;
+    return false;
+  }
   uint32_t num_reads() const { return num_reads_; }
 
   // Takes the L1's answers and calls deliver(read, slot, lanes) for each warp whose read is complete.
@@ -98,7 +102,8 @@ class FetchQueue final : public RequestSource, private WantedNodes {
     mem::Token token = 0;
   };
   std::optional<mem::Token> next_answer(Cycle now) {
-    if (sure_hits_.empty() || sure_hits_.front().ready > now) return l1_.pop(now, mem::Client::RtUnit);
+    if (sure_hits_.empty() || sure_hits_.front().ready > now) [[likely]]
+      return l1_.pop(now, mem::Client::RtUnit);
     const mem::Token token = sure_hits_.front().token;
     sure_hits_.pop();
     return token;

@@ -51,12 +51,13 @@ void RayWalk::start_elsewhere(uint32_t slot, int lane, Cycle now) {
 }
 
 void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
-  for (WalkHook* hook : hooks_)
-    if (hook->detour(slot, lane, now)) return;
+  if (!hooks_.empty()) [[unlikely]]
+    for (WalkHook* hook : hooks_)
+      if (hook->detour(slot, lane, now)) return;
   RayState& ray = buffer_[slot].ray_of(lane);
-  if (ray.status == RayStatus::Traversing) {
+  if (ray.status == RayStatus::Traversing) [[likely]] {
     const Fetch node = next_fetch(ray);
-    if (const std::byte* bytes = memory_.find(node.address, node.bytes)) {
+    if (const std::byte* bytes = memory_.find(node.address, node.bytes)) [[likely]] {
       // The node is tested many cycles from now.
       __builtin_prefetch(bytes);
       __builtin_prefetch(bytes + node.bytes - 1);
@@ -69,14 +70,15 @@ void RayWalk::go_on(uint32_t slot, int lane, Cycle now) {
 }
 
 void RayWalk::start_test(uint32_t slot, int lane, Cycle now) {
-  if (WalkHook* errand = buffer_[slot].read[size_t(lane)].errand)
+  if (WalkHook* errand = buffer_[slot].read[size_t(lane)].errand) [[unlikely]]
     errand->errand_started(slot, lane);
   else
     visit(slot, lane, now);
 }
 
 void RayWalk::end_test(uint32_t slot, int lane, Cycle now) {
-  for (WalkHook* hook : hooks_) hook->test_ended(slot, lane);
+  if (!hooks_.empty()) [[unlikely]]
+    for (WalkHook* hook : hooks_) hook->test_ended(slot, lane);
   go_on(slot, lane, now);
 }
 
@@ -97,8 +99,9 @@ void RayWalk::visit(uint32_t slot, int lane, Cycle now) {
   ++*nodes_of_kind_[size_t(node.kind)];
   // The step takes the node off the stack. What it pushes is never behind the ray's hit, so it stays there.
   const auto pushed = uint32_t(std::max(ray.stack_size - before + 1, 0));
-  for (WalkHook* hook : hooks_)
-    hook->visited({now, slot, lane, ray, node, ray.hits_in_interval - hits, pushed});
+  if (!hooks_.empty()) [[unlikely]]
+    for (WalkHook* hook : hooks_)
+      hook->visited({now, slot, lane, ray, node, ray.hits_in_interval - hits, pushed});
 }
 
 // A shader that gets the ray may end its walk, so the ray is counted now. start() takes the count back when

@@ -58,6 +58,7 @@ RtUnit::RtUnit(const Params& params, const Context& context)
       fetches_(params, context.memory, context.l1, buffer_, stats_),
       account_(stats_) {
   add_optional_parts(params, context);
+  tell_core();
 }
 
 // The order of these lines decides who sends first, which hook is asked first and which exit a warp passes
@@ -126,29 +127,51 @@ void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* stat
   GLINT_CHECK(can_accept() && mask != 0, "warp {} submitted to a full RT unit or without rays", warp_slot);
   due_ = 0;
   ++stats_.warps;
-  if (former_) return former_->accept(now, warp_slot, mask, states);
-  const uint32_t slot = buffer_.admit(now, warp_slot, mask, states);
-  for_each_lane(mask, [&](int lane) { walk_.start(slot, lane, now); });
+  if (former_) {
+    former_->accept(now, warp_slot, mask, states);
+  } else {
+    const uint32_t slot = buffer_.admit(now, warp_slot, mask, states);
+    for_each_lane(mask, [&](int lane) { walk_.start(slot, lane, now); });
+  }
+  tell_core();
+}
+
+std::optional<uint32_t> RtUnit::pop_completion(Cycle now) {
+  const auto warp_slot = former_ ? former_->pop_completion(now) : buffer_.pop_completion();
+  tell_core();
+  return warp_slot;
+}
+
+// Notes for the core whether there is room and whether a warp may go back. A pool knows the latter only when
+// it is asked.
+void RtUnit::tell_core() {
+  set_room(former_ ? former_->has_room() : buffer_.has_room());
+  set_completion(former_ || buffer_.has_completion());
 }
 
 void RtUnit::run(Cycle now) {
   buffer_.retire(now);
-  if (former_) former_->form(now);
-  for (const auto& step : before_tests_) step(now);
+  if (former_) [[unlikely]]
+    former_->form(now);
+  if (!before_tests_.empty()) [[unlikely]]
+    for (const auto& step : before_tests_) step(now);
   pipelines_.finish_tests(now);
   receive(now);
   pipelines_.start_tests(now);
-  if (sharing_) sharing_->share(now);
+  if (sharing_) [[unlikely]]
+    sharing_->share(now);
   const Stall reason = send_requests(now);
-  for (const auto& step : after_requests_) step(now);
+  if (!after_requests_.empty()) [[unlikely]]
+    for (const auto& step : after_requests_) step(now);
   account_.account(now, reason, idle_reason(), {buffer_.num_resident(), buffer_.num_rays()});
   due_ = buffer_.take_opened() ? now + 1 : find_due(now);
+  tell_core();
 }
 
 // Passes what has arrived to the pipelines. A part of a stack needs no test.
 void RtUnit::receive(Cycle now) {
   fetches_.receive(now, [&](const Read& read, uint32_t slot, LaneMask lanes) {
-    if (read.pipe == kNoPipe)
+    if (read.pipe == kNoPipe) [[unlikely]]
       for_each_lane(lanes, [&](int lane) { walk_.go_on(slot, lane, now); });
     else
       pipelines_.push(read, slot, lanes);
@@ -184,8 +207,10 @@ Cycle RtUnit::find_due(Cycle now) const {
   if (buffer_.has_leaving_warps()) return now + 1;
   Cycle next = std::min(fetches_.next_event(now), pipelines_.next_event());
   for (const RequestSource* source : sources_) next = std::min(next, source->next_event(now));
-  if (prefetches_) next = std::min(next, prefetches_->next_event(now));
-  if (sharing_) next = std::min(next, sharing_->next_event(now));
+  if (prefetches_) [[unlikely]]
+    next = std::min(next, prefetches_->next_event(now));
+  if (sharing_) [[unlikely]]
+    next = std::min(next, sharing_->next_event(now));
   return next == kNever ? next : std::max(next, now + 1);
 }
 

@@ -64,13 +64,10 @@ class RtUnit final : public RtPort {
   // Returns a chosen policy that asks for treelets, as a clause like "rt.order = ...", or nothing.
   static std::string who_needs_treelets(const Params& params);
 
-  bool can_accept() const override { return former_ ? former_->has_room() : buffer_.has_room(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
-  std::optional<uint32_t> pop_completion(Cycle now) override {
-    return former_ ? former_->pop_completion(now) : buffer_.pop_completion();
-  }
+  std::optional<uint32_t> pop_completion(Cycle now) override;
   void tick(Cycle now) override {
-    if (now >= due_ || l1_.has_answer(now, mem::Client::RtUnit)) run(now);
+    if ((now >= due_) | l1_.has_answer(now, mem::Client::RtUnit)) run(now);
   }
   // The L1's answers are new input, and the L1's next_event() tells of them.
   Cycle next_event(Cycle now) const override { return due_ == kNever ? kNever : std::max(due_, now + 1); }
@@ -113,6 +110,7 @@ class RtUnit final : public RtPort {
   Stall send_requests(Cycle now);
   RequestSource* next_source(Cycle now);
   bool has_reads_waiting() const;
+  void tell_core();
   Stall idle_reason() const;
   Cycle find_due(Cycle now) const;
 

@@ -58,7 +58,11 @@ struct BufferSlot {
 
   bool is_helping(int lane) const { return helping >> lane & 1; }
   // Returns the ray that a lane works on, or the part of one.
-  RayState& ray_of(int lane) const { return is_helping(lane) ? parts[lane] : states[lane]; }
+  RayState& ray_of(int lane) const {
+    if (is_helping(lane)) [[unlikely]]
+      return parts[lane];
+    return states[lane];
+  }
   // Returns the lane whose ray a lane works for.
   int owner_of(int lane) const { return is_helping(lane) ? owner[size_t(lane)] : lane; }
   // Returns the thread whose own ray has the lane.
@@ -122,7 +126,8 @@ class WarpBuffer {
   void leave(uint32_t slot, Cycle now);
   // Gives back warps that left in earlier cycles, so a slot that becomes free now is usable from now on.
   void retire(Cycle now) {
-    if (!finished_.empty()) retire_finished(now);
+    if (!finished_.empty()) [[unlikely]]
+      retire_finished(now);
   }
   std::optional<uint32_t> pop_completion() {
     if (completions_.empty()) return std::nullopt;
@@ -132,6 +137,7 @@ class WarpBuffer {
   }
 
   bool has_leaving_warps() const { return !finished_.empty() || !completions_.empty(); }
+  bool has_completion() const { return !completions_.empty(); }
   bool has_wanting_lanes() const { return wanting_ != 0; }
   uint32_t num_resident() const { return num_resident_; }
   uint32_t num_rays() const { return num_rays_; }  // rays that have not stopped

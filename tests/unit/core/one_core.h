@@ -21,17 +21,18 @@ namespace glint::core {
 // Answers every warp after the same number of cycles, with all rays done and nothing hit.
 class FixedLatencyRays final : public rt::RtPort {
  public:
-  FixedLatencyRays(Cycle latency, size_t capacity) : latency_(latency), capacity_(capacity) {}
-  bool can_accept() const override { return inside_.size() < capacity_; }
+  FixedLatencyRays(Cycle latency, size_t capacity) : latency_(latency), capacity_(capacity) { tell(); }
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, rt::RayState* states) override {
     for_each_lane(mask, [&](int lane) { states[lane].status = rt::RayStatus::Done; });
     inside_.push_back({now + latency_, warp_slot});
     lanes_.push_back(mask);
+    tell();
   }
   std::optional<uint32_t> pop_completion(Cycle now) override {
     if (inside_.empty() || inside_.front().at > now) return std::nullopt;
     const uint32_t slot = inside_.front().slot;
     inside_.pop_front();
+    tell();
     return slot;
   }
   void tick(Cycle) override {}
@@ -45,6 +46,11 @@ class FixedLatencyRays final : public rt::RtPort {
     Cycle at;
     uint32_t slot;
   };
+  void tell() {
+    set_room(inside_.size() < capacity_);
+    set_completion(!inside_.empty());
+  }
+
   const Cycle latency_;
   const size_t capacity_;
   std::deque<Inside> inside_;
