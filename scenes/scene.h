@@ -124,7 +124,7 @@ struct LoadOptions {
   bool instancing = false;  // Models that are affine copies of an earlier one become instances of it.
   // It is called while a scene is loaded or generated, and may be empty.
   std::function<void(double fraction)> progress = {};
-  uint32_t threads = 1;  // threads of the host that read large meshes; they do not show in the scene
+  uint32_t threads = 1;  // threads of the host that read or make large meshes; they do not show in the scene
   // Scene::motion is wanted. Skins and morph targets of a glTF file are then read, too, and a file is in its
   // pose at time 0.
   bool moving = false;

@@ -4,16 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "base/parallel_ranges.h"
+
 namespace glint::scenes {
 namespace {
 
-constexpr int kBlock = 4;       // lattice points along a block that is skipped or sampled as a whole
-constexpr int kCoarse = 16;     // lattice points along a larger block, which is tried first
+// Lattice points along a block. A coarse block that may have a part of the surface is cut into middle ones,
+// and these into fine ones.
+constexpr int kCoarse = 16, kMiddle = 4, kFine = 2;
 constexpr float kSlope = 1.5f;  // the steepest change that a field may have (see surface_of)
 constexpr uint32_t kNone = ~0u;
 
@@ -31,18 +35,19 @@ class SurfaceNets {
     for (size_t axis = 0; axis < 3; ++axis)
       points_[axis] = (int((box.upper[axis] - box.lower[axis]) / cell) / kCoarse + 1) * kCoarse;
     values_.resize(size_t(points_[0]) * size_t(points_[1]) * size_t(points_[2]));
-    near_.resize(values_.size() / (kBlock * kBlock * kBlock));
+    words_ = (size_t(points_[0] / kFine) + 63) / 64;
+    near_.resize(words_ * size_t(points_[1] / kFine) * size_t(points_[2] / kFine));
   }
 
-  Model run() {
-    sample();
+  Model run(uint32_t threads) {
+    const auto slabs = size_t(points_[2] / kCoarse);
+    parallel_ranges(slabs, 1, threads, [&](size_t slab, size_t) { sample_slab(int(slab) * kCoarse); });
+    // A cell whose vertex is not set in its turn touches no crossed edge, and nobody asks for its vertex.
     std::array<std::vector<uint32_t>, 2> slices;
-    slices[0].resize(size_t(points_[0]) * size_t(points_[1]));
+    for (auto& slice : slices) slice.assign(size_t(points_[0]) * size_t(points_[1]), kNone);
     for (int z = 0; z + 1 < points_[2]; ++z) {
-      slices[1].assign(slices[0].size(), kNone);
-      for (int y = 0; y + 1 < points_[1]; ++y)
-        for_near_points(0, y, z, [&](int x) { slices[1][slot(x, y)] = cell_vertex(x, y, z); });
-      if (z > 0) add_faces(slices[0], slices[1], z);
+      each_near(z, [&](int x, int y) { slices[1][slot(x, y)] = cell_vertex(x, y, z); });
+      if (z > 0) each_near(z, [&](int x, int y) { add_faces(slices[0], slices[1], x, y, z); });
       std::swap(slices[0], slices[1]);
     }
     compute_smooth_normals(model_);
@@ -51,49 +56,54 @@ class SurfaceNets {
 
  private:
   size_t slot(int x, int y) const { return size_t(y) * size_t(points_[0]) + size_t(x); }
-  float value(int x, int y, int z) const {
+  float& value(int x, int y, int z) {
     return values_[size_t(z) * size_t(points_[0]) * size_t(points_[1]) + slot(x, y)];
   }
   Vec3 point(float x, float y, float z) const { return origin_ + Vec3{x, y, z} * cell_; }
 
-  size_t block(int x, int y, int z) const {
-    return (size_t(z / kBlock) * size_t(points_[1] / kBlock) + size_t(y / kBlock)) *
-               size_t(points_[0] / kBlock) +
-           size_t(x / kBlock);
+  size_t near_row(int y, int z) const {
+    return (size_t(z / kFine) * size_t(points_[1] / kFine) + size_t(y / kFine)) * words_;
   }
-  // Calls `visit` with each x of a row, from `first` to the last but one, whose point lies in a block that is
-  // near the surface. The other points have the sign of all points next to them.
+  // Calls visit(x, y) for the points of plane z, in order of y and x, that lie in fine blocks near the
+  // surface and are the lowest corners of cells.
   template <class Visit>
-  void for_near_points(int first, int y, int z, const Visit& visit) const {
-    for (int x0 = 0; x0 < points_[0]; x0 += kBlock)
-      if (near_[block(x0, y, z)])
-        for (int x = std::max(x0, first); x < std::min(x0 + kBlock, points_[0] - 1); ++x) visit(x);
+  void each_near(int z, Visit&& visit) const {
+    for (int y = 0; y + 1 < points_[1]; ++y)
+      for (size_t word = 0; word < words_; ++word)
+        for (uint64_t rest = near_[near_row(y, z) + word]; rest; rest &= rest - 1) {
+          const int begin = (int(word) * 64 + std::countr_zero(rest)) * kFine;
+          for (int x = begin; x < begin + kFine && x + 1 < points_[0]; ++x) visit(x, y);
+        }
   }
 
-  void sample() {
-    for (int z = 0; z < points_[2]; z += kCoarse)
-      for (int y = 0; y < points_[1]; y += kCoarse)
-        for (int x = 0; x < points_[0]; x += kCoarse) sample_block(x, y, z, kCoarse);
+  void sample_slab(int z) {
+    for (int y = 0; y < points_[1]; y += kCoarse)
+      for (int x = 0; x < points_[0]; x += kCoarse) sample_block(x, y, z, kCoarse);
   }
 
+  // Samples the points of a block. Where the surface is far, they all get the value of the block's middle,
+  // which has their sign.
   void sample_block(int x0, int y0, int z0, int size) {
     // The 1 makes the cells between this block's last points and the next block's first points count for
     // both.
     const float reach = 0.8660254f * float(size + 1);  // half the block's diagonal, in cells
     const float half = 0.5f * float(size - 1);
     const float middle = field_(point(float(x0) + half, float(y0) + half, float(z0) + half));
-    const bool far = std::abs(middle) > kSlope * reach * cell_;
-    if (!far && size == kBlock) near_[block(x0, y0, z0)] = 1;
-    const int step = far || size == kBlock ? 1 : kBlock;
+    if (std::abs(middle) > kSlope * reach * cell_)
+      return each_in_block(x0, y0, z0, size, 1, [&](int x, int y, int z) { value(x, y, z) = middle; });
+    if (size > kFine) {
+      const int part = size == kCoarse ? kMiddle : kFine;
+      return each_in_block(x0, y0, z0, size, part, [&](int x, int y, int z) { sample_block(x, y, z, part); });
+    }
+    near_[near_row(y0, z0) + size_t(x0 / kFine / 64)] |= uint64_t{1} << x0 / kFine % 64;
+    each_in_block(x0, y0, z0, size, 1,
+                  [&](int x, int y, int z) { value(x, y, z) = field_(point(float(x), float(y), float(z))); });
+  }
+  template <class Visit>
+  static void each_in_block(int x0, int y0, int z0, int size, int step, const Visit& visit) {
     for (int z = z0; z < z0 + size; z += step)
       for (int y = y0; y < y0 + size; y += step)
-        for (int x = x0; x < x0 + size; x += step) {
-          if (step > 1)
-            sample_block(x, y, z, kBlock);
-          else
-            values_[size_t(z) * size_t(points_[0]) * size_t(points_[1]) + slot(x, y)] =
-                far ? middle : field_(point(float(x), float(y), float(z)));
-        }
+        for (int x = x0; x < x0 + size; x += step) visit(x, y, z);
   }
 
   // Returns the vertex of a cell, which is the mean of the crossings of its twelve edges. Returns kNone when
@@ -122,19 +132,19 @@ class SurfaceNets {
                       material_);
   }
 
-  // Adds the faces of the lattice edges in plane z (along x and y) and of the edges that leave it (along z).
-  void add_faces(const std::vector<uint32_t>& below, const std::vector<uint32_t>& above, int z) {
-    for (int y = 1; y + 1 < points_[1]; ++y)
-      for_near_points(1, y, z, [&](int x) {
-        const bool here = value(x, y, z) < 0;
-        if (here != (value(x + 1, y, z) < 0))
-          add_quad(below[slot(x, y - 1)], below[slot(x, y)], above[slot(x, y)], above[slot(x, y - 1)], !here);
-        if (here != (value(x, y + 1, z) < 0))
-          add_quad(below[slot(x - 1, y)], below[slot(x, y)], above[slot(x, y)], above[slot(x - 1, y)], here);
-        if (here != (value(x, y, z + 1) < 0))
-          add_quad(above[slot(x - 1, y - 1)], above[slot(x, y - 1)], above[slot(x, y)], above[slot(x - 1, y)],
-                   !here);
-      });
+  // Adds the faces of the lattice edges that leave a point along x, y and z. `below` and `above` are the
+  // vertices of the cells below and above plane z.
+  void add_faces(const std::vector<uint32_t>& below, const std::vector<uint32_t>& above, int x, int y,
+                 int z) {
+    if (x == 0 || y == 0) return;
+    const bool here = value(x, y, z) < 0;
+    if (here != (value(x + 1, y, z) < 0))
+      add_quad(below[slot(x, y - 1)], below[slot(x, y)], above[slot(x, y)], above[slot(x, y - 1)], !here);
+    if (here != (value(x, y + 1, z) < 0))
+      add_quad(below[slot(x - 1, y)], below[slot(x, y)], above[slot(x, y)], above[slot(x - 1, y)], here);
+    if (here != (value(x, y, z + 1) < 0))
+      add_quad(above[slot(x - 1, y - 1)], above[slot(x, y - 1)], above[slot(x, y)], above[slot(x - 1, y)],
+               !here);
   }
 
   // Adds the quad of four corners in turn. It is cut along the shorter diagonal, which follows the surface
@@ -159,7 +169,8 @@ class SurfaceNets {
   int32_t material_;
   std::array<int, 3> points_{};
   std::vector<float> values_;
-  std::vector<uint8_t> near_;  // one for each block of kBlock points a side: whether the surface may be in it
+  size_t words_ = 0;            // of a row of near_
+  std::vector<uint64_t> near_;  // a bit for each fine block, row by row: the surface may be in it
   Model model_;
 };
 
@@ -209,8 +220,9 @@ float wave(float x) {
   return 32 * s * s - 1;
 }
 
-Model surface_of(const DistanceField& field, const Bounds& box, float cell, int32_t material) {
-  return SurfaceNets(field, box, cell, material).run();
+Model surface_of(const DistanceField& field, const Bounds& box, float cell, int32_t material,
+                 uint32_t threads) {
+  return SurfaceNets(field, box, cell, material).run(threads);
 }
 
 }  // namespace glint::scenes

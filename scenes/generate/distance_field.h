@@ -28,7 +28,8 @@ using DistanceField = std::function<float(const Vec3&)>;
 // outward. It has one vertex for each cell that the surface crosses and two triangles for each crossed
 // lattice edge; all are about the same size. `box` must hold the solid with one cell to spare, and `cell` is
 // the lattice spacing. The field must not change faster than 1.5 times the distance, so that far blocks can
-// be skipped.
-Model surface_of(const DistanceField& field, const Bounds& box, float cell, int32_t material);
+// be skipped. Up to `threads` threads of the host call the field, and the mesh is the same with any number.
+Model surface_of(const DistanceField& field, const Bounds& box, float cell, int32_t material,
+                 uint32_t threads = 1);
 
 }  // namespace glint::scenes

@@ -151,7 +151,7 @@ Bounds box_of(const Figure& figure, FigurePart part) {
 }  // namespace
 
 void add_figure_part(Model& model, const Frame& frame, const Figure& figure, FigurePart part,
-                     uint64_t triangles, int32_t material) {
+                     uint64_t triangles, int32_t material, uint32_t threads) {
   if (part == FigurePart::Eyes) {
     for (const float side : {-1.0f, 1.0f})
       add_ball(model, frame.inner({0.022f * side, 0.932f, 0.058f}, {0.009f, 0.011f, 0.009f}), triangles / 2,
@@ -163,7 +163,7 @@ void add_figure_part(Model& model, const Frame& frame, const Figure& figure, Fig
   const Vec3 spare = Vec3{1, 1, 1} * (2 * cell);
   const Bounds box = box_of(figure, part);
   const Model shape = surface_of([&](const Vec3& p) { return part_distance(figure, part, p); },
-                                 {box.lower - spare, box.upper + spare}, cell, material);
+                                 {box.lower - spare, box.upper + spare}, cell, material, threads);
   const auto first = uint32_t(model.vertices.size());
   for (const Vertex& v : shape.vertices) {
     const Vec3 normal = normalized(frame.x * v.normal[0] + frame.y * v.normal[1] + frame.z * v.normal[2]);

@@ -22,9 +22,10 @@ struct Figure {
 };
 
 // Adds one part. The frame's axes are as long as the figure is tall; its origin lies between the feet. The
-// number of triangles is met within about a fifth, because it follows from the part's estimated surface.
+// number of triangles is met within about a fifth, because it follows from the part's estimated surface. Up
+// to `threads` threads of the host make it.
 void add_figure_part(Model& model, const Frame& frame, const Figure& figure, FigurePart part,
-                     uint64_t triangles, int32_t material);
+                     uint64_t triangles, int32_t material, uint32_t threads = 1);
 
 // Adds all parts of a figure, whose materials are in the order of kFigureParts. They share the triangles by
 // their surfaces.

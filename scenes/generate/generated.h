@@ -36,6 +36,7 @@ class Generator {
     take(std::move(model));
   }
 
+  uint32_t threads() const { return options_.threads; }  // threads of the host that may make a model
   // Returns the number of triangles that are still to be made.
   uint64_t rest() const { return made_ < triangles_ ? triangles_ - made_ : 0; }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "base/parallel_ranges.h"
 #include "scenes/generate/distance_field.h"
 #include "scenes/generate/solids.h"
 
@@ -67,26 +68,32 @@ float leaf_depth(float u, float v) {
   return depth;
 }
 
-}  // namespace
-
-Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32_t height, uint32_t seed) {
-  Texture texture{fmt::format("painted_{}", seed), width, height, {}};
-  texture.rgba.resize(4 * size_t(width) * height);
-  const uint32_t columns = width / kTile + 1;
-  std::vector<float> smooth(columns);
-  for (uint32_t y = 0; y < height; ++y) {
-    if (y % kTile == 0)
-      for (uint32_t x = 0; x < columns; ++x)
-        smooth[x] = 1 + 0.4f * fractal({float(x) * 0.05f, float(y / kTile) * 0.05f, float(seed) * 3.3f}, 2);
-    for (uint32_t x = 0; x < width; ++x) {
-      const float u = float(x) / float(width), v = float(y) / float(height);
-      const float cloud = pattern == Pattern::Lacquer ? 1 : smooth[x / kTile];
-      const float light = shade(pattern, u, v) * cloud * (0.92f + 0.08f * grain(x, y, seed));
-      uint8_t* texel = &texture.rgba[4 * (size_t(y) * width + x)];
+// Paints rows `begin` to `end` of a texture, which share their smooth noise.
+void paint_rows(Texture& texture, uint32_t begin, uint32_t end, Pattern pattern, const Vec3& color,
+                uint32_t seed) {
+  std::vector<float> smooth(texture.width / kTile + 1, 1.0f);
+  if (pattern != Pattern::Lacquer)
+    for (uint32_t x = 0; x < smooth.size(); ++x)
+      smooth[x] = 1 + 0.4f * fractal({float(x) * 0.05f, float(begin / kTile) * 0.05f, float(seed) * 3.3f}, 2);
+  for (uint32_t y = begin; y < end; ++y)
+    for (uint32_t x = 0; x < texture.width; ++x) {
+      const float u = float(x) / float(texture.width), v = float(y) / float(texture.height);
+      const float light = shade(pattern, u, v) * smooth[x / kTile] * (0.92f + 0.08f * grain(x, y, seed));
+      uint8_t* texel = &texture.rgba[4 * (size_t(y) * texture.width + x)];
       for (size_t c = 0; c < 3; ++c) texel[c] = unorm(color[c] * light);
       texel[3] = 255;
     }
-  }
+}
+
+}  // namespace
+
+Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32_t height, uint32_t seed,
+                      uint32_t threads) {
+  Texture texture{fmt::format("painted_{}", seed), width, height, {}};
+  texture.rgba.resize(4 * size_t(width) * height);
+  parallel_ranges(height, kTile, threads, [&](size_t begin, size_t end) {
+    paint_rows(texture, uint32_t(begin), uint32_t(end), pattern, color, seed);
+  });
   return texture;
 }
 

@@ -34,9 +34,9 @@ Model make_cornell_box();
 void add_cornell_materials(Scene& scene);
 
 // Return stand-ins for meshes that cannot be redistributed, in the coordinates of the originals before
-// placement.
-Model make_bunny_stand_in(int32_t material);   // about 144,000 triangles; feet at y = 0
-Model make_statue_stand_in(int32_t material);  // about 449,000 triangles; height about 600
+// placement. Up to `threads` threads of the host make them.
+Model make_bunny_stand_in(int32_t material, uint32_t threads);   // about 144,000 triangles; feet at y = 0
+Model make_statue_stand_in(int32_t material, uint32_t threads);  // about 449,000 triangles; height about 600
 // Returns a two-masted schooner of about 6,255 triangles, and appends its 11 materials to the scene.
 Model make_schooner(Scene& scene);
 

@@ -56,9 +56,9 @@ float rabbit_distance(const Vec3& p) {
 
 }  // namespace
 
-Model make_bunny_stand_in(int32_t material) {
-  Model model =
-      surface_of(rabbit_distance, {{-1.05f, -0.05f, -0.60f}, {0.85f, 1.65f, 0.60f}}, kCell, material);
+Model make_bunny_stand_in(int32_t material, uint32_t threads) {
+  Model model = surface_of(rabbit_distance, {{-1.05f, -0.05f, -0.60f}, {0.85f, 1.65f, 0.60f}}, kCell,
+                           material, threads);
   model.name = "bunny_stand_in";
   return model;
 }

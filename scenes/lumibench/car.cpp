@@ -31,7 +31,8 @@ class Workshop {
   int32_t paint(Pattern pattern, const Vec3& color) {
     if (made_ >= kTextures) return generator_.color("", color[0], color[1], color[2]);
     const uint32_t seed = made_++;
-    return generator_.textured("", paint_texture(pattern, color, kTextureSide, kTextureSide, seed));
+    return generator_.textured(
+        "", paint_texture(pattern, color, kTextureSide, kTextureSide, seed, generator_.threads()));
   }
   int32_t lacquer(const Vec3& color) { return paint(Pattern::Lacquer, color); }
   Random& random() { return random_; }

@@ -31,14 +31,14 @@ void adjust(Model& model, float scale, const Vec3& move) {
   for (Vertex& vertex : model.vertices) vertex.position = vertex.position * scale + move;
 }
 
-Model load_bunny(Scene& scene, const std::string& path) {
+Model load_bunny(Scene& scene, const std::string& path, uint32_t threads) {
   scene.form = "stand-in";
   if (path.empty()) {
     scene.form = "built-in";
     scene.note =
         "The mesh is a procedural bunny with the original's size and place and about its triangle count "
         "(144,046).";
-    return make_bunny_stand_in(add_material(scene, "bunny", lambertian(0.7f, 0.7f, 0.7f)));
+    return make_bunny_stand_in(add_material(scene, "bunny", lambertian(0.7f, 0.7f, 0.7f)), threads);
   }
   Model model = load_obj(path, scene.materials);
   if (ends_with(path, kStanfordBunny)) {
@@ -51,14 +51,14 @@ Model load_bunny(Scene& scene, const std::string& path) {
   return model;
 }
 
-Model load_statue(Scene& scene, const std::string& path) {
+Model load_statue(Scene& scene, const std::string& path, uint32_t threads) {
   scene.form = "stand-in";
   if (path.empty()) {
     scene.form = "built-in";
     scene.note =
         "The mesh is a procedural winged statue with the original's size and place and about its triangle "
         "count (448.9K).";
-    return make_statue_stand_in(add_material(scene, "statue", lambertian(0.7f, 0.7f, 0.7f)));
+    return make_statue_stand_in(add_material(scene, "statue", lambertian(0.7f, 0.7f, 0.7f)), threads);
   }
   Model model = load_obj(path, scene.materials);
   if (ends_with(path, kSmallLucy)) {
@@ -77,19 +77,19 @@ Model load_statue(Scene& scene, const std::string& path) {
 
 }  // namespace
 
-Scene build_bunny(const LoadOptions&, const std::string& original) {
+Scene build_bunny(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "BUNNY";
   add_cornell_materials(scene);
   scene.camera = indoor_camera(800, 40, 400);
   scene.models.push_back(make_cornell_box());
-  Model bunny = load_bunny(scene, original);
+  Model bunny = load_bunny(scene, original, options.threads);
   place(bunny, {.translation = {173, 5, -307}, .scale = 200, .rotation_y = 75});
   scene.models.push_back(std::move(bunny));
   return scene;
 }
 
-Scene build_mirror_box(const LoadOptions&, const std::string& original) {
+Scene build_mirror_box(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "REF";
   add_cornell_materials(scene);
@@ -99,7 +99,7 @@ Scene build_mirror_box(const LoadOptions&, const std::string& original) {
   scene.camera = indoor_camera(350, 78, 280);
   scene.models.push_back(make_cornell_box());
   scene.models.push_back(make_sphere("glass_sphere", {425, 165, -147.5f}, 80, 4));
-  Model statue = load_statue(scene, original);
+  Model statue = load_statue(scene, original, options.threads);
   place(statue, {.translation = {173, -9, -377}, .scale = 0.6f, .rotation_y = 75});
   scene.models.push_back(std::move(statue));
   return scene;

@@ -239,8 +239,8 @@ void generate(Scene& scene, const LoadOptions& options) {
     const bool cloth = k >= 9 && k < 12;
     const std::string name = fmt::format("{}_{}", cloth ? "cloth" : k < 4 ? kNames[k] : "stone", k);
     const Pattern pattern = cloth ? Pattern::Stripes : k < 4 ? kPatterns[k] : Pattern::Stone;
-    hall.paint.push_back(
-        generator.textured(name, paint_texture(pattern, cloth ? kCloth[k - 9] : stone, 1024, 1024, k)));
+    hall.paint.push_back(generator.textured(
+        name, paint_texture(pattern, cloth ? kCloth[k - 9] : stone, 1024, 1024, k, generator.threads())));
   }
   hall.side_of(-1);
   hall.side_of(1);

@@ -50,7 +50,9 @@ void girl(Generator& generator, const Frame& view) {
   const Figure figure{.hands = {{{-0.2f, 0.47f, 0.03f}, {0.27f, 0.56f, 0.14f}}}, .long_hair = true};
   const Frame body = view.inner({0, -1.1f, 0}, {1.72f, 1.72f, 1.72f}, -12);
   const auto part = [&](const char* name, FigurePart kind, uint64_t triangles, int32_t material) {
-    generator.model(name, [&](Model& m) { add_figure_part(m, body, figure, kind, triangles, material); });
+    generator.model(name, [&](Model& m) {
+      add_figure_part(m, body, figure, kind, triangles, material, generator.threads());
+    });
   };
   part("spring_body", FigurePart::Skin, 95'000, skin);
   part("spring_eyes", FigurePart::Eyes, 12'000, seam);

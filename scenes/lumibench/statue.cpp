@@ -99,8 +99,8 @@ float statue_distance(const Vec3& p) {
 
 }  // namespace
 
-Model make_statue_stand_in(int32_t material) {
-  Model model = surface_of(statue_distance, {{-125, 8, -270}, {160, 620, 270}}, kCell, material);
+Model make_statue_stand_in(int32_t material, uint32_t threads) {
+  Model model = surface_of(statue_distance, {{-125, 8, -270}, {160, 620, 270}}, kCell, material, threads);
   model.name = "statue_stand_in";
   return model;
 }

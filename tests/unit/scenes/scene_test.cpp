@@ -264,6 +264,24 @@ TEST_CASE("placing turns by a right-handed angle about y, then scales, then move
   CHECK(model.vertices[0].normal[2] == Approx(-0.5));
 }
 
+TEST_CASE("a surface is the same at any number of threads, and where its blocks are cut") {
+  // The lattice has blocks that are skipped as a whole, and a body that is thinner than a fine block.
+  const auto field = [](const Vec3& p) {
+    const float disc = std::max(std::sqrt(p[0] * p[0] + p[2] * p[2]) - 1.5f, std::abs(p[1] - 0.21f) - 0.02f);
+    return std::min(length(p - Vec3{0.3f, 1, 0}) - 0.4f, disc);
+  };
+  const Bounds box{{-1.8f, -1.3f, -1.8f}, {1.8f, 1.7f, 1.8f}};
+  const Model one = surface_of(field, box, 0.05f, 7), three = surface_of(field, box, 0.05f, 7, 3);
+  CHECK(open_edges(one) == 0);
+  CHECK(one.indices.size() > 10'000);
+  REQUIRE(one.vertices.size() == three.vertices.size());
+  CHECK(one.indices == three.indices);
+  for (size_t i = 0; i < one.vertices.size(); ++i) {
+    REQUIRE(one.vertices[i].position == three.vertices[i].position);
+    REQUIRE(one.vertices[i].normal == three.vertices[i].normal);
+  }
+}
+
 TEST_CASE("the surface of a sphere's distance field is closed and lies on the sphere with outward normals") {
   const auto field = [](const Vec3& p) { return length(p) - 1; };
   const Model model = surface_of(field, {{-1.3f, -1.3f, -1.3f}, {1.3f, 1.3f, 1.3f}}, 0.05f, 7);
