@@ -12,20 +12,24 @@
 #include <unistd.h>
 #include <vector>
 
+#include "base/block_hash.h"
+
 namespace glint {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct Header {
-  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '1'};
+  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '2'};
   uint64_t key_bytes = 0, value_bytes = 0, hash = 0;  // `hash` covers key and value
 };
 
-Header header_of(const std::string& key, std::string_view value) {
+Header header_of(const std::string& key, std::string_view head, std::string_view rest) {
   Header header;
-  header.key_bytes = key.size(), header.value_bytes = value.size();
-  header.hash = content_hash(value, content_hash(key));
+  header.key_bytes = key.size(), header.value_bytes = head.size() + rest.size();
+  BlockHash hash;
+  for (const std::string_view part : {std::string_view(key), head, rest}) hash.add(part);
+  header.hash = hash.first();
   return header;
 }
 
@@ -78,35 +82,49 @@ std::string FileStore::file_of(const std::string& key) const {
                      options_.ending);
 }
 
-std::optional<std::string> FileStore::find(const std::string& given) {
-  if (options_.folder.empty()) return std::nullopt;
-  const std::string path = file_of(given), key = options_.build + '\0' + given;
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) return std::nullopt;
-  const auto bytes = uint64_t(in.tellg());
-  in.seekg(0);
-  Header header;
-  std::string found_key, value;
-  const bool begins = bytes >= sizeof header && in.read(reinterpret_cast<char*>(&header), sizeof header) &&
-                      std::memcmp(header.magic, Header{}.magic, sizeof header.magic) == 0;
-  const uint64_t rest = bytes - std::min<uint64_t>(bytes, sizeof header);
-  if (begins && header.key_bytes <= rest && header.value_bytes == rest - header.key_bytes) {
-    found_key.resize(header.key_bytes);
-    value.resize(header.value_bytes);
-    in.read(found_key.data(), std::streamsize(found_key.size()));
-    in.read(value.data(), std::streamsize(value.size()));
-  }
-  if (!begins || !in || header_of(found_key, value).hash != header.hash) {
-    ++damaged_;
-    return std::nullopt;
-  }
-  if (found_key != key) return std::nullopt;
-  std::error_code failed;
-  fs::last_write_time(path, fs::file_time_type::clock::now(), failed);
+std::optional<std::string> FileStore::find(const std::string& key) {
+  std::string value;
+  const auto room = [&](uint64_t bytes) {
+    value.resize(bytes);
+    return value.data();
+  };
+  if (!find(key, {}, room)) return std::nullopt;
   return value;
 }
 
-void FileStore::store(const std::string& given, std::string_view value) {
+bool FileStore::find(const std::string& given, std::span<char> head, const Room& room) {
+  if (options_.folder.empty()) return false;
+  const std::string path = file_of(given), key = options_.build + '\0' + given;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) return false;
+  const auto bytes = uint64_t(in.tellg());
+  in.seekg(0);
+  Header header;
+  const bool begins = bytes >= sizeof header && in.read(reinterpret_cast<char*>(&header), sizeof header) &&
+                      std::memcmp(header.magic, Header{}.magic, sizeof header.magic) == 0;
+  const uint64_t after = bytes - std::min<uint64_t>(bytes, sizeof header);
+  if (!begins || header.key_bytes > after || header.value_bytes != after - header.key_bytes ||
+      header.value_bytes < head.size()) {
+    ++damaged_;
+    return false;
+  }
+  std::string found_key(header.key_bytes, 0);
+  const uint64_t left = header.value_bytes - head.size();
+  char* const rest = room(left);
+  in.read(found_key.data(), std::streamsize(found_key.size()));
+  in.read(head.data(), std::streamsize(head.size()));
+  in.read(rest, std::streamsize(left));
+  if (!in || header_of(found_key, {head.data(), head.size()}, {rest, left}).hash != header.hash) {
+    ++damaged_;
+    return false;
+  }
+  if (found_key != key) return false;
+  std::error_code failed;
+  fs::last_write_time(path, fs::file_time_type::clock::now(), failed);
+  return true;
+}
+
+void FileStore::store(const std::string& given, std::string_view head, std::string_view rest) {
   if (options_.folder.empty()) return;
   std::error_code failed;
   fs::create_directories(options_.folder, failed);
@@ -115,9 +133,9 @@ void FileStore::store(const std::string& given, std::string_view value) {
       fmt::format("{}.{}.{:x}.{}", path, ::getpid(), reinterpret_cast<uintptr_t>(this), num_temporaries_++);
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    const Header header = header_of(key, value);
+    const Header header = header_of(key, head, rest);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    out << key << value;
+    out << key << head << rest;
     out.flush();
     if (!out) {
       out.close();
@@ -127,7 +145,7 @@ void FileStore::store(const std::string& given, std::string_view value) {
   }
   fs::rename(temporary, path, failed);
   if (failed) fs::remove(temporary, failed);
-  sweep(key.size() + value.size());
+  sweep(key.size() + head.size() + rest.size());
 }
 
 // Limits the size of the folder. The folder is only searched from time to time, so it may exceed its limit by

@@ -4,8 +4,10 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,8 +35,18 @@ class FileStore {
   };
   explicit FileStore(Options options) : options_(std::move(options)) {}
 
+  // Returns the value of a key, if there is one.
   std::optional<std::string> find(const std::string& key);
-  void store(const std::string& key, std::string_view value);
+  void store(const std::string& key, std::string_view value) { store(key, {}, value); }
+
+  // Gives room for the rest of a value, which has this number of bytes.
+  using Room = std::function<char*(uint64_t bytes)>;
+  // Finds a large value without a copy of it: its first bytes go to `head`, and the rest goes where `room`
+  // says. Returns whether there is such a value; otherwise the bytes mean nothing, and `room` may have been
+  // called all the same.
+  bool find(const std::string& key, std::span<char> head, const Room& room);
+  // Stores the value that consists of the two.
+  void store(const std::string& key, std::string_view head, std::string_view rest);
   std::string file_of(const std::string& key) const;
   uint64_t damaged() const { return damaged_; }  // number of damaged files that find() met
 

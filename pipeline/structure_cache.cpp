@@ -3,12 +3,12 @@
 #include "pipeline/structure_cache.h"
 
 #include <cstdint>
-#include <cstring>
 #include <fmt/format.h>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <type_traits>
+
+#include "base/block_hash.h"
 
 namespace glint::pipeline {
 namespace {
@@ -26,31 +26,27 @@ uint64_t primitives_of(const rt::BottomLevel& input) {
   return count;
 }
 
-// Returns a key: sizes and flags in words, and contents in two hashes of 64 bits with different starts.
+// Returns a key: sizes and flags in words, and contents in two hashes of 64 bits.
 std::string key_of(const rt::BottomLevel& input, const rt::BuildOptions& options) {
   std::string key = fmt::format("{} {} {}", options.format.name, options.layout.name, options.pair_triangles);
   for (const auto* params : {&options.format.params, &options.layout.params})
     for (const ParamInfo& p : *params) key += fmt::format(" {}={}", p.key, p.value);
-  uint64_t first = content_hash("first"), second = content_hash("second");
+  BlockHash contents;
   for (const rt::Geometry& g : input.geometries) {
     key += fmt::format(" [{} {} {} {} {}{}]", g.positions.size(), g.stride, g.indices.size(), g.aabbs.size(),
                        int(g.opaque), int(g.no_duplicate_any_hit));
     for (const std::string_view part : {bytes_of(g.positions), bytes_of(g.indices), bytes_of(g.aabbs),
-                                        bytes_of(std::span<const float>(g.transform))}) {
-      first = content_hash(part, first);
-      second = content_hash(part, second);
-    }
+                                        bytes_of(std::span<const float>(g.transform))})
+      contents.add(part);
     if (!g.micromaps) continue;
     const rt::MicromapFormat& format = g.micromaps->format;
     key += fmt::format(" micromaps {}^{} {}", format.two_states ? 2 : 4, format.level,
                        g.micromaps->states.size());
     for (const std::string_view part :
-         {bytes_of(std::span(g.micromaps->index)), bytes_of(std::span(g.micromaps->states))}) {
-      first = content_hash(part, first);
-      second = content_hash(part, second);
-    }
+         {bytes_of(std::span(g.micromaps->index)), bytes_of(std::span(g.micromaps->states))})
+      contents.add(part);
   }
-  return key + fmt::format(" {:016x}{:016x}", first, second);
+  return key + fmt::format(" {:016x}{:016x}", contents.first(), contents.second());
 }
 
 static_assert(std::is_trivially_copyable_v<rt::StructureInfo>);
@@ -66,17 +62,18 @@ rt::EncodedStructure StructureCache::encode(const std::string& name, const rt::B
   const std::string key = key_of(input, options);
   const Turn turn(*this, key);
   rt::EncodedStructure out;
-  if (const std::optional<std::string> value = files_.find(key); value && value->size() >= sizeof out.info) {
-    std::memcpy(&out.info, value->data(), sizeof out.info);
-    out.bytes = mem::HostBlock(value->size() - sizeof out.info);
-    std::memcpy(out.bytes.data(), value->data() + sizeof out.info, out.bytes.size());
+  const std::span<char> info(reinterpret_cast<char*>(&out.info), sizeof out.info);
+  const auto room = [&](uint64_t bytes) {
+    out.bytes = mem::HostBlock(bytes);
+    return reinterpret_cast<char*>(out.bytes.data());
+  };
+  if (files_.find(key, info, room)) {
     count(&Counts::found);
     return out;
   }
   out = rt::encode_bottom(name, input, options, threads);
-  std::string value(reinterpret_cast<const char*>(&out.info), sizeof out.info);
-  value.append(reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size());
-  files_.store(key, value);
+  files_.store(key, {info.data(), info.size()},
+               {reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size()});
   count(&Counts::built);
   return out;
 }
