@@ -13,7 +13,7 @@
 namespace glint::core {
 namespace {
 
-std::unique_ptr<Parking> make(const std::string& name) {
+std::unique_ptr<Parking> made_parking(const std::string& name) {
   return PolicyChoice<Parking>(name.c_str()).make({});
 }
 
@@ -22,7 +22,7 @@ std::unique_ptr<Parking> make(const std::string& name) {
 TEST_CASE("every parking answers the same views alike") {
   for (const std::string& name : Registry<Parking>::names()) {
     CAPTURE(name);
-    const auto one = make(name), two = make(name);
+    const auto one = made_parking(name), two = made_parking(name);
     CHECK(one->is_used() == two->is_used());
     std::mt19937 random(7);
     for (Cycle now = 0; now < 2000; ++now) {
@@ -48,13 +48,13 @@ TEST_CASE("the default is that warps keep their places, and it adds no slots") {
     params.parking = PolicyChoice<Parking>(name.c_str());
     params.parking_lot.warps = 5;
     const bool is_default = name == Params{}.parking.name;
-    CHECK(make(name)->is_used() != is_default);
+    CHECK(made_parking(name)->is_used() != is_default);
     CHECK(num_warp_slots(params, 16) == (is_default ? 16 : 21));
   }
 }
 
 TEST_CASE("at_rays keeps places that nobody wants") {
-  const auto policy = make("at_rays");
+  const auto policy = made_parking("at_rays");
   Parking::View view{.now = 9, .lanes = 32, .places = 32, .held = 32};
   CHECK_FALSE(policy->gives_up(view));
   view.has_blocks = true;

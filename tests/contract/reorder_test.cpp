@@ -17,7 +17,7 @@ namespace {
 using Call = exec::ReorderCall;
 using Found = Call::Found;
 
-std::unique_ptr<Reorder> make(const std::string& name) {
+std::unique_ptr<Reorder> made_reorder(const std::string& name) {
   return PolicyChoice<Reorder>(name.c_str()).make({});
 }
 
@@ -26,7 +26,7 @@ std::unique_ptr<Reorder> make(const std::string& name) {
 TEST_CASE("every reordering gives a call the same key each time, and decides alike for the same warps") {
   for (const std::string& name : Registry<Reorder>::names()) {
     CAPTURE(name);
-    const auto one = make(name), two = make(name);
+    const auto one = made_reorder(name), two = made_reorder(name);
     CHECK(one->where() == two->where());
     std::mt19937 random(7);
     std::vector<Call> calls(500);
@@ -49,11 +49,11 @@ TEST_CASE(
   const std::vector<std::string> names = Registry<Reorder>::names();
   CHECK(names.size() >= 3);
   for (const std::string& name : names)
-    CHECK((make(name)->where() == Reorder::Where::Nowhere) == (name == Params{}.reorder.name));
+    CHECK((made_reorder(name)->where() == Reorder::Where::Nowhere) == (name == Params{}.reorder.name));
 }
 
 TEST_CASE("sort keeps records together, and within them hints") {
-  const auto sort = make("sort");
+  const auto sort = made_reorder("sort");
   const auto key = [&](Found found, uint32_t record, uint32_t hint) {
     return sort->key({found, record, hint, 8});
   };
@@ -66,7 +66,7 @@ TEST_CASE("sort keeps records together, and within them hints") {
 }
 
 TEST_CASE("by_shader_record does not look at hints") {
-  const auto by_record = make("by_shader_record");
+  const auto by_record = made_reorder("by_shader_record");
   CHECK(by_record->key({Found::Hit, 3, 1, 8}) == by_record->key({Found::Hit, 3, 2, 8}));
   CHECK(by_record->key({Found::Hit, 3, 1, 8}) != by_record->key({Found::Hit, 2, 1, 8}));
   CHECK(by_record->key({Found::Hit, 3, 0, 0}) != by_record->key({Found::Miss, 3, 0, 0}));

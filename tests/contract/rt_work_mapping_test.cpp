@@ -47,8 +47,8 @@ TEST_CASE("a mapping moves from a giver to a taker, and repeats itself exactly")
 }
 
 // Traces warps of which only some lanes have rays, and these of very different lengths.
-Traced trace(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top, uint64_t seed,
-             uint32_t flags, bool every_cycle) {
+Traced trace_uneven(const Params& params, const mem::AddressSpace& memory, const StructureInfo& top,
+                    uint64_t seed, uint32_t flags, bool every_cycle) {
   Random random{seed};
   std::vector<WarpRays> rays(5);
   for (WarpRays& warp : rays)
@@ -82,15 +82,15 @@ TEST_CASE("rays whose work lanes share find the hits that they find alone, with 
             params.result_store = seed % 3 == 0;
             if (!RtUnit::why_not_together(params).empty()) continue;
             CAPTURE(name, stack, prefetch, retest, flags);
-            const Traced a = trace(params, memory, top, seed, flags, true),
-                         b = trace(params, memory, top, seed, flags, false);
+            const Traced a = trace_uneven(params, memory, top, seed, flags, true),
+                         b = trace_uneven(params, memory, top, seed, flags, false);
             CHECK(a.completion == b.completion);
             CHECK(glint::test::first_difference(a.stats, b.stats) == "");
             moves += a.count("moves");
             CHECK((a.count("moves") != 0) == (name != WorkMapping::kOwnRay));
             Params alone = params;
             alone.mapping.name = WorkMapping::kOwnRay;
-            const Traced c = trace(alone, memory, top, seed, flags, true);
+            const Traced c = trace_uneven(alone, memory, top, seed, flags, true);
             require_same_hits(a.rays, c.rays);
           }
   CHECK(moves > 5000);
@@ -104,11 +104,11 @@ TEST_CASE("a ray that may need a shader is not shared, and gets its shader") {
     const StructureInfo top = single(memory, triangles(positions, opaque));
     Params params;
     params.mapping.name = "cooperative";
-    const Traced plain = trace(params, memory, top, 3, 0, true);
+    const Traced plain = trace_uneven(params, memory, top, 3, 0, true);
     CHECK((plain.count("moves") != 0) == opaque);
-    const Traced forced = trace(params, memory, top, 3, ray_flag::kOpaque, true);
+    const Traced forced = trace_uneven(params, memory, top, 3, ray_flag::kOpaque, true);
     CHECK(forced.count("moves") != 0);
-    const Traced refused = trace(params, memory, top, 3, ray_flag::kNoOpaque, true);
+    const Traced refused = trace_uneven(params, memory, top, 3, ray_flag::kNoOpaque, true);
     CHECK(refused.count("moves") == 0);
   }
 }

@@ -34,11 +34,12 @@ FIXTURES = {
     "docs/modelling.md": "glint run SHIP --shader sh --out out/ship",
     "docs/profiling.md": "glint run WKND --shader pt --profile --sample 1000 --out out",
 }
+# With -S, python looks for no installed packages and starts sooner.
 WRAPPER = """#!/bin/sh
-exec "{python}" -B "{here}/reduced.py" "{glint}" "$@"
+exec "{python}" -B -S "{here}/reduced.py" "{glint}" "$@"
 """
 REFUSER = """#!/bin/sh
-exec "{python}" -B "{here}/not_run.py" {name} "{root}" "{glint}" "$@"
+exec "{python}" -B -S "{here}/not_run.py" {name} "{root}" "{glint}" "$@"
 """
 
 

@@ -16,7 +16,7 @@ using test::Oracle;
 
 namespace {
 
-constexpr uint32_t kSize = 32;
+constexpr uint32_t kSceneSize = 32;
 
 // Says what a scene costs. Large: a second or more of building structures, or files of more than 30 MB. None:
 // there are no files, because WKND comes from code and no file of CRNVL exists.
@@ -59,7 +59,7 @@ void check_scene(const std::string& scene, const std::string& assets) {
       const Case now{workload, bounces, oracle};
       if (oracle == Oracle::Exact || is_for_embree(scene, assets, now)) cases.push_back(now);
     }
-  const std::vector<Agreement> found = agreements(scene, assets, kSize, cases);
+  const std::vector<Agreement> found = agreements(scene, assets, kSceneSize, cases);
   for (size_t i = 0; i < cases.size(); ++i) {
     INFO(scene << ' ' << i);
     if (cases[i].oracle == Oracle::Exact) {

@@ -19,7 +19,7 @@
 namespace glint::test {
 namespace {
 
-constexpr uint64_t kBudget = 2'000'000;  // instructions per warp, far more than any shader here needs
+constexpr uint64_t kRayBudget = 2'000'000;  // instructions per warp, far more than any shader here needs
 
 void bind(exec::World& world, uint32_t set, uint32_t binding, uint64_t address_or_handle,
           uint64_t bytes_or_count) {
@@ -159,7 +159,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   const pipeline::TableInput table = make_table(*this, shaders_, shaders, options);
   pipeline::GpuParams gpu;
   gpu.cores = 2;
-  gpu.core.instruction_budget = kBudget;
+  gpu.core.instruction_budget = kRayBudget;
   gpu.compiler.max_registers = options.max_registers;
   gpu.rt.unit = options.software ? rt::kSoftware : rt::kHardware;
   pipeline::add_traversal(shaders.programs, gpu, shaders_.glsl.cache);
@@ -203,7 +203,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
     machine.run({});
     faults = machine.passed();
   } else {
-    faults = pipeline::run_functional(world, kBudget, {}).faults;
+    faults = pipeline::run_functional(world, kRayBudget, {}).faults;
   }
 
   const auto texels = memory.view<float>(world.images[0].base, kImageWidth * kImageHeight * 4);

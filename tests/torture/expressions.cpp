@@ -17,9 +17,9 @@ namespace {
 
 using enum spv::Op;
 
-enum Kind : uint8_t { U32, F32, Bool, U64, U16, U8, F64, kKinds };
+enum Type : uint8_t { U32, F32, Bool, U64, U16, U8, F64, kKinds };
 constexpr uint32_t kWidth[kKinds] = {32, 32, 1, 64, 16, 8, 64};
-bool is_float(Kind kind) {
+bool is_float(Type kind) {
   return kind == F32 || kind == F64;
 }
 
@@ -162,12 +162,12 @@ constexpr OpRow kRows[] = {
     {OpExtInst, GLSLstd450FindUMsb, "u", 1},
 };
 
-Kind kind_of(char letter) {
-  return Kind(std::string_view("ufblscd").find(letter));
+Type kind_of(char letter) {
+  return Type(std::string_view("ufblscd").find(letter));
 }
 
 struct Known {
-  Kind kind;
+  Type kind;
   uint32_t count;
   Id id;
   std::string name;
@@ -179,12 +179,12 @@ class Maker {
   ExpressionProgram run(uint32_t count);
 
  private:
-  Id scalar_type(Kind kind) {
+  Id scalar_type(Type kind) {
     return kind == Bool     ? w_.bool_type()
            : is_float(kind) ? w_.float_type(kWidth[kind])
                             : w_.int_type(kWidth[kind]);
   }
-  Id type(Kind kind, uint32_t count) {
+  Id type(Type kind, uint32_t count) {
     return count == 1 ? scalar_type(kind) : w_.declare(OpTypeVector, {scalar_type(kind), count});
   }
   Id op(spv::Op what, Id result_type, Words operands) {
@@ -193,14 +193,14 @@ class Maker {
     append(body_, what, operands);
     return id;
   }
-  Id constant(Kind kind, uint64_t bits) {
+  Id constant(Type kind, uint64_t bits) {
     if (kind == Bool) return w_.truth(bits & 1);
     if (kWidth[kind] == 64)
       return w_.declare(OpConstant, {scalar_type(kind), uint32_t(bits), uint32_t(bits >> 32)}, true);
     return w_.declare(OpConstant, {scalar_type(kind), uint32_t(bits) & uint32_t((1ull << kWidth[kind]) - 1)},
                       true);
   }
-  Id splat(Kind kind, uint32_t count, uint64_t bits) {
+  Id splat(Type kind, uint32_t count, uint64_t bits) {
     const Id part = constant(kind, bits);
     if (count == 1) return part;
     Words operands{type(kind, count)};
@@ -208,12 +208,12 @@ class Maker {
     return w_.declare(OpConstantComposite, operands, true);
   }
   Id load_word();
-  Known fresh(Kind kind, uint32_t count);
-  Known operand(Kind kind, uint32_t count);
+  Known fresh(Type kind, uint32_t count);
+  Known operand(Type kind, uint32_t count);
   // Returns the bits of a float, with those of NaN set to 0, because Vulkan leaves open which NaN a result
   // is.
-  Id bits_of(Kind kind, uint32_t count, Id x) {
-    const Kind to = kind == F32 ? U32 : U64;
+  Id bits_of(Type kind, uint32_t count, Id x) {
+    const Type to = kind == F32 ? U32 : U64;
     const Id is_nan = op(OpIsNan, type(Bool, count), {x});
     return op(OpSelect, type(to, count), {is_nan, splat(to, count, 0), op(OpBitcast, type(to, count), {x})});
   }
@@ -221,7 +221,7 @@ class Maker {
   void keep(Known value, std::string what);
   void apply(const OpRow& row);
   void convert(const OpRow& row, const Known& a);
-  void special_form(const OpRow& row, Kind kind, uint32_t count, const Known& a, const Known& b);
+  void special_form(const OpRow& row, Type kind, uint32_t count, const Known& a, const Known& b);
   std::string title(const OpRow& row) const {
     return row.function ? frontend::name_of_glsl_function(row.function)
                         : frontend::name_of_opcode(uint32_t(row.op));
@@ -246,7 +246,7 @@ Id Maker::load_word() {
 }
 
 // Returns a value from the inputs.
-Known Maker::fresh(Kind kind, uint32_t count) {
+Known Maker::fresh(Type kind, uint32_t count) {
   Words parts;
   for (uint32_t i = 0; i < count; ++i) {
     const Id word = load_word();
@@ -285,7 +285,7 @@ Known Maker::fresh(Kind kind, uint32_t count) {
   return known_.back();
 }
 
-Known Maker::operand(Kind kind, uint32_t count) {
+Known Maker::operand(Type kind, uint32_t count) {
   if (random_.chance(15)) {
     static constexpr uint64_t kWords[] = {
         0, 1, 2, 4, 31, 0xffff'ffff'ffff'ffffull, 0x8000'0000'8000'0080ull, 0x7fff'ffff, 16, 3, 0x3f80'0000};
@@ -332,8 +332,8 @@ void Maker::keep(Known value, std::string what) {
 }
 
 void Maker::convert(const OpRow& row, const Known& a) {
-  static constexpr Kind kIntegers[] = {U32, U64, U16, U8};
-  Kind to = U32;
+  static constexpr Type kIntegers[] = {U32, U64, U16, U8};
+  Type to = U32;
   switch (row.op) {
     case OpConvertFToS:
     case OpConvertFToU:
@@ -359,7 +359,7 @@ void Maker::convert(const OpRow& row, const Known& a) {
   keep({to, a.count, result, {}}, fmt::format("{}({})", title(row), a.name));
 }
 
-void Maker::special_form(const OpRow& row, Kind kind, uint32_t count, const Known& a, const Known& b) {
+void Maker::special_form(const OpRow& row, Type kind, uint32_t count, const Known& a, const Known& b) {
   const std::string what = fmt::format("{}({}, {})", title(row), a.name, b.name);
   const Id same = type(kind, count);
   switch (row.form) {
@@ -425,7 +425,7 @@ void Maker::special_form(const OpRow& row, Kind kind, uint32_t count, const Know
 
 void Maker::apply(const OpRow& row) {
   const std::string_view kinds = row.kinds;
-  const Kind kind = kind_of(kinds[random_.below(uint32_t(kinds.size()))]);
+  const Type kind = kind_of(kinds[random_.below(uint32_t(kinds.size()))]);
   const bool needs_vector = row.form == Form::ByScalar || row.form == Form::Dot || row.form == Form::AnyAll ||
                             row.form == Form::Shuffle || row.form == Form::PickPart;
   const uint32_t count = needs_vector ? 2 + random_.below(3) : random_.chance(50) ? 1 : 1 + random_.below(4);

@@ -14,20 +14,20 @@ using namespace glint::mem;
 
 namespace {
 
-struct Outcome {
+struct DramOutcome {
   std::map<Address, Cycle> back;
   uint64_t busy = 0, clocks = 0, active = 0;
-  bool operator==(const Outcome&) const = default;
+  bool operator==(const DramOutcome&) const = default;
 };
 
 // Runs 2000 requests in bursts. With `often` the model is advanced in every cycle, not only when it asks for
 // it.
-Outcome exercise(const std::string& name, bool often) {
+DramOutcome exercise(const std::string& name, bool often) {
   const DramParams params;
   stats::Group root(nullptr, "test");
   const auto model = PolicyChoice<DramModel>(name.c_str()).make({params, 256, 1365.0, &root});
   std::mt19937 random(4);
-  Outcome out;
+  DramOutcome out;
   std::map<Address, Cycle> asked;
   Cycle now = 0, next_burst = 0;
   uint32_t added = 0, burst = 0;
@@ -94,7 +94,7 @@ TEST_CASE(
   REQUIRE(Registry<DramModel>::names() == std::vector<std::string>{"banked", "simple"});
   for (const std::string& name : Registry<DramModel>::names()) {
     INFO(name);
-    const Outcome once = exercise(name, false);
+    const DramOutcome once = exercise(name, false);
     CHECK(once == exercise(name, true));
     CHECK(once == exercise(name, false));
   }

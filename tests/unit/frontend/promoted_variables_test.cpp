@@ -15,8 +15,8 @@
 namespace glint::frontend {
 namespace {
 
-const std::vector<uint32_t> kWords = {0,  1,   2,    3,           7,           31,
-                                      32, 100, 1999, 0x7fff'ffff, 0xdead'beef, 0x1234'5678};
+const std::vector<uint32_t> kSourceWords = {0,  1,   2,    3,           7,           31,
+                                            32, 100, 1999, 0x7fff'ffff, 0xdead'beef, 0x1234'5678};
 
 std::string repeated(int n, const std::function<std::string(std::string)>& text) {
   std::string all;
@@ -24,7 +24,7 @@ std::string repeated(int n, const std::function<std::string(std::string)>& text)
   return all;
 }
 
-long count_ops(const Words& words, spv::Op op) {
+long occurrences(const Words& words, spv::Op op) {
   long n = 0;
   for (size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) n += op_of(words[at]) == op;
   return n;
@@ -36,10 +36,10 @@ TEST_CASE("thousands of selections, in a loop with continue and break, compute w
     return "if (((x >> (" + k + "u & 31u)) & 1u) != 0u) y = y * 3u + z; else { z ^= y + " + k + "u; }\n";
   });
   const auto got = lab::run(
-      kWords, "uint z = 1u, w;\nfor (uint i = 0u; i < 4u; ++i) {\nif (i == (x & 3u)) continue;\n" + code +
-                  "if (y > 0xf0000000u) break;\nif (i == 3u) w = y;\n y += w & 0u;\n}\ny += z;");
-  for (size_t lane = 0; lane < kWords.size(); ++lane) {
-    const uint32_t x = kWords[lane];
+      kSourceWords, "uint z = 1u, w;\nfor (uint i = 0u; i < 4u; ++i) {\nif (i == (x & 3u)) continue;\n" +
+                        code + "if (y > 0xf0000000u) break;\nif (i == 3u) w = y;\n y += w & 0u;\n}\ny += z;");
+  for (size_t lane = 0; lane < kSourceWords.size(); ++lane) {
+    const uint32_t x = kSourceWords[lane];
     uint32_t y = 0, z = 1;
     for (uint32_t i = 0; i < 4; ++i) {
       if (i == (x & 3)) continue;
@@ -63,10 +63,10 @@ TEST_CASE("a switch with thousands of cases and a chain of a thousand `else if` 
   const auto chain = [](const std::string& k) {
     return "if ((x & 0x3ffu) == " + k + "u) y += " + k + "u * 7u;\nelse ";
   };
-  const auto got = lab::run(kWords, "y = 3u;\nswitch (int(x)) {\n" + repeated(2000, cases) +
-                                        "default: y ^= x; }\n" + repeated(1000, chain) + "y += 11u;\n");
-  for (size_t lane = 0; lane < kWords.size(); ++lane) {
-    const uint32_t x = kWords[lane];
+  const auto got = lab::run(kSourceWords, "y = 3u;\nswitch (int(x)) {\n" + repeated(2000, cases) +
+                                              "default: y ^= x; }\n" + repeated(1000, chain) + "y += 11u;\n");
+  for (size_t lane = 0; lane < kSourceWords.size(); ++lane) {
+    const uint32_t x = kSourceWords[lane];
     uint32_t y = 3;
     if (x >= 2000) y ^= x;
     if (x < 2000) {
@@ -96,7 +96,7 @@ TEST_CASE("promoted modules are valid, and a second promotion finds nothing") {
     ++tried;
     const Words promoted = with_promoted_variables(words, 0);
     CHECK(validate_spirv(promoted) == "");
-    CHECK(count_ops(promoted, spv::Op::OpVariable) <= count_ops(words, spv::Op::OpVariable));
+    CHECK(occurrences(promoted, spv::Op::OpVariable) <= occurrences(words, spv::Op::OpVariable));
     CHECK(with_promoted_variables(promoted, 0) == promoted);
     CHECK(with_promoted_variables(words, 1'000'000) == words);
   }
@@ -150,17 +150,17 @@ OpFunctionEnd
                                      "t.spvasm");
   const Words promoted = with_promoted_variables(words, 0);
   CHECK(validate_spirv(promoted) == "");
-  CHECK(count_ops(promoted, spv::Op::OpVariable) == 2);  // the block and the volatile variable
-  CHECK(count_ops(promoted, spv::Op::OpPhi) == 1);
-  CHECK(count_ops(promoted, spv::Op::OpUndef) == 1);
-  CHECK(count_ops(promoted, spv::Op::OpName) == 0);
-  CHECK(count_ops(promoted, spv::Op::OpDecorate) == count_ops(words, spv::Op::OpDecorate) - 2);
+  CHECK(occurrences(promoted, spv::Op::OpVariable) == 2);  // the block and the volatile variable
+  CHECK(occurrences(promoted, spv::Op::OpPhi) == 1);
+  CHECK(occurrences(promoted, spv::Op::OpUndef) == 1);
+  CHECK(occurrences(promoted, spv::Op::OpName) == 0);
+  CHECK(occurrences(promoted, spv::Op::OpDecorate) == occurrences(words, spv::Op::OpDecorate) - 2);
 }
 
 TEST_CASE("phis are tried only where stores of a variable meet, however many selections follow") {
-  constexpr uint32_t kVariables = 300;
+  constexpr uint32_t kManyVariables = 300;
   const auto all = [](const std::function<std::string(std::string)>& text) {
-    return repeated(kVariables, text);
+    return repeated(kManyVariables, text);
   };
   const std::string code =
       "#version 460\nlayout(local_size_x = 1) in;\nlayout(binding = 0) buffer Out { uint v[]; };\nvoid "
@@ -172,18 +172,18 @@ TEST_CASE("phis are tried only where stores of a variable meet, however many sel
   const Words words = glsl_text_to_spirv(code, "t.comp", isa::Stage::Compute, {});
   const Words promoted = with_promoted_variables(words, 0);
   CHECK(validate_spirv(promoted) == "");
-  CHECK(count_ops(promoted, spv::Op::OpPhi) == kVariables);
+  CHECK(occurrences(promoted, spv::Op::OpPhi) == kManyVariables);
   // Each phi that is tried takes an id.
-  CHECK(promoted[kBoundWord] == words[kBoundWord] + kVariables);
+  CHECK(promoted[kBoundWord] == words[kBoundWord] + kManyVariables);
 }
 
 TEST_CASE("variables stored in cases that fall through, and read behind loops, have the values they say") {
-  constexpr uint32_t kVariables = 300;
+  constexpr uint32_t kManyVariables = 300;
   const auto all = [](const std::function<std::string(std::string)>& text) {
-    return repeated(kVariables, text);
+    return repeated(kManyVariables, text);
   };
   const auto got = lab::run(
-      kWords,
+      kSourceWords,
       all([](const std::string& k) { return "uint a" + k + " = x + " + k + "u;\n"; }) +
           "for (uint i = 0u; i < 3u; ++i) {\nif ((x & 3u) == i) continue;\nswitch (int(x) + 7 * int(i)) {\n" +
           all([](const std::string& k) {
@@ -192,13 +192,13 @@ TEST_CASE("variables stored in cases that fall through, and read behind loops, h
           }) +
           "}\nif (a9 > 0xf0000000u) break;\n}\n" +
           all([](const std::string& k) { return "y = y * 31u + a" + k + ";\n"; }));
-  for (size_t lane = 0; lane < kWords.size(); ++lane) {
-    const uint32_t x = kWords[lane];
+  for (size_t lane = 0; lane < kSourceWords.size(); ++lane) {
+    const uint32_t x = kSourceWords[lane];
     std::vector<uint32_t> a;
-    for (uint32_t k = 0; k < kVariables; ++k) a.push_back(x + k);
+    for (uint32_t k = 0; k < kManyVariables; ++k) a.push_back(x + k);
     for (uint32_t i = 0; i < 3; ++i) {
       if ((x & 3) == i) continue;
-      for (uint32_t k = x + 7 * i; k < kVariables; ++k) {
+      for (uint32_t k = x + 7 * i; k < kManyVariables; ++k) {
         a[k] = (a[k] + (a[k] & 1 ? i : 0)) * 3;
         if (k % 10 == 5) break;
       }
@@ -225,9 +225,9 @@ TEST_CASE("matrices, structs and arrays that are stored as a whole are promoted 
                  return "p = turned(p, " + k + "u); m = stepped(m, (x & " + k + "u) == 0u); p.b.x += p.a;\n";
                }) +
       "y = p.a + p.b.x + uint(m[0].x + 2.0 * m[1].y);";
-  const auto got = lab::run(kWords, code, globals);
-  for (size_t lane = 0; lane < kWords.size(); ++lane) {
-    const uint32_t x = kWords[lane];
+  const auto got = lab::run(kSourceWords, code, globals);
+  for (size_t lane = 0; lane < kSourceWords.size(); ++lane) {
+    const uint32_t x = kSourceWords[lane];
     uint32_t a = x, b = x * 3, c = 5;
     float m[4] = {0, 0, 0, 0};
     for (uint32_t k = 0; k < kSteps; ++k) {

@@ -55,16 +55,16 @@ reference::Ray primary_ray(const Camera& camera, float x, float y) {
 }
 
 double hits(const Scene& scene) {
-  constexpr int kSize = 64;
+  constexpr int kSide = 64;
   const auto intersector = reference::make_embree_intersector(scene);
   int count = 0;
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
       count += !intersector
-                    ->closest(primary_ray(scene.camera, (float(x) + 0.5f) / kSize * 2 - 1,
-                                          (float(y) + 0.5f) / kSize * 2 - 1))
+                    ->closest(primary_ray(scene.camera, (float(x) + 0.5f) / kSide * 2 - 1,
+                                          (float(y) + 0.5f) / kSide * 2 - 1))
                     .missed();
-  return 100.0 * count / (kSize * kSize);
+  return 100.0 * count / (kSide * kSide);
 }
 
 bool all_indices_valid(const Scene& scene) {
