@@ -63,7 +63,7 @@ struct CompiledPipeline {
 struct Launched {
   bool is_launch = false;  // false: it had no threads
   pipeline::LaunchEnd end = pipeline::LaunchEnd::Whole;
-  uint64_t cycles = 0;    // 0 without timing
+  uint64_t cycles = 0;      // 0 without timing
   exec::FaultLog faults{};  // faults that were reported as warnings
 };
 
