@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <iostream>
 #include <memory>
-#include <unistd.h>
+#include <stdexcept>
+#include <stdlib.h>
 
-#include "pipeline/structure_cache.h"
 #include "tests/reference/surface.h"
 #include "tests/support/small_jobs.h"
 
@@ -44,17 +44,19 @@ std::vector<reference::ReferenceResult> references(const pipeline::RenderJob& jo
   return results;
 }
 
-// Holds a folder that is removed with the object.
-struct Folder {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("glint_structures_" + std::to_string(getpid()));
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-};
+std::string new_folder() {
+  std::string path = (std::filesystem::temp_directory_path() / "glint_structures_XXXXXX").string();
+  if (!mkdtemp(path.data())) throw std::runtime_error("no folder can be made for structures: " + path);
+  return path;
+}
 
 }  // namespace
+
+KeptStructures::KeptStructures() : folder_(new_folder()), cache_({.folder = folder_, .build = "test"}) {
+}
+KeptStructures::~KeptStructures() {
+  std::filesystem::remove_all(folder_);
+}
 
 Agreement compare(const pipeline::RenderResult& picture, const reference::ReferenceResult& expected) {
   Agreement out;
@@ -81,10 +83,9 @@ Agreement compare(const pipeline::RenderResult& picture, const reference::Refere
 
 std::vector<Agreement> agreements(pipeline::RenderJob job, const std::vector<Case>& cases) {
   const std::vector<reference::ReferenceResult> expected = references(job, cases);
-  const Folder folder;
-  pipeline::StructureCache structures({.folder = folder.path.string(), .build = "test"});
-  job.structure_cache = &structures;  // built for the first case only
-  job.timing = false;                 // the timing machine gives the same bytes (tests/cosim)
+  KeptStructures structures;
+  job.structure_cache = structures.cache();
+  job.timing = false;  // the timing machine gives the same bytes (tests/cosim)
   std::vector<Agreement> out;
   pipeline::RenderResult picture;
   for (size_t i = 0; i < cases.size(); ++i) {

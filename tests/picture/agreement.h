@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/render.h"
+#include "pipeline/structure_cache.h"
 #include "tests/reference/reference.h"
 
 namespace glint::test {
@@ -20,6 +21,21 @@ struct Agreement {
   double mean_error = 0;  // largest relative difference of a channel's mean over the picture
 };
 Agreement compare(const pipeline::RenderResult& picture, const reference::ReferenceResult& expected);
+
+// Keeps structures in a folder of its own, which ends with the object, so that the jobs of a scene build its
+// structures once.
+class KeptStructures {
+ public:
+  KeptStructures();
+  ~KeptStructures();
+  KeptStructures(const KeptStructures&) = delete;
+  KeptStructures& operator=(const KeptStructures&) = delete;
+  pipeline::StructureCache* cache() { return &cache_; }
+
+ private:
+  std::string folder_;
+  pipeline::StructureCache cache_;
+};
 
 // Describes a scene's shader set with a number of bounces, compared with one of the oracles.
 struct Case {

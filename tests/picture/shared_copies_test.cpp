@@ -43,7 +43,9 @@ double equal_pixels(const std::vector<float>& a, const std::vector<float>& b) {
 // Checks a scene with shared copies. Some pixels may differ. A copy's corners are rounded after its matrix,
 // so a ray that grazes an edge or begins on a surface may meet another triangle.
 void check_shared(const std::string& scene, const std::string& assets) {
-  const pipeline::RenderJob stored = test::small_job(scene, Workload::Shadow, kInstancingSize, 2, assets);
+  pipeline::RenderJob stored = test::small_job(scene, Workload::Shadow, kInstancingSize, 2, assets);
+  test::KeptStructures structures;
+  stored.structure_cache = structures.cache();
   pipeline::RenderJob shared = stored;
   shared.scene = scenes::load_scene(scene, {assets, true});
   REQUIRE(shared.scene.instances.size() == stored.scene.models.size());
@@ -125,7 +127,9 @@ TEST_CASE("the forest of files whose copies are shared has the picture of one th
   }
   const test::SceneData data("FRST");
   if (data.path.empty()) return;
-  const pipeline::RenderJob stored = test::small_job("FRST", Workload::Shadow, kInstancingSize, 2, data.path);
+  pipeline::RenderJob stored = test::small_job("FRST", Workload::Shadow, kInstancingSize, 2, data.path);
+  test::KeptStructures structures;
+  stored.structure_cache = structures.cache();
   pipeline::RenderJob shared = stored;
   shared.scene = scenes::load_scene("FRST", {data.path, true});
   CHECK(shared.scene.stored_triangles() * 10 < stored.scene.stored_triangles());
