@@ -2,23 +2,12 @@
 // change at its ports.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
-#include "tests/support/memory_rig.h"
+#include "tests/timing/memsys/requests.h"
 
 using namespace glint;
 using namespace glint::mem;
 
-namespace {
-
-constexpr Cycle kL2Hit = 160;
-
-Request read(Address line, Token token, uint8_t sectors = 1) {
-  return {line, sectors, false, Traffic::RtNode, token};
-}
-Request write(Address line, uint8_t sectors = 1, Traffic traffic = Traffic::ShaderGlobal,
-              WordMask words = kAllWords) {
-  return {line, sectors, true, traffic, 0, words};
-}
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("a fill keeps its bank from an access in its cycle, and neither another bank nor the next cycle") {
   for (const bool shared : {false, true}) {

@@ -1,16 +1,15 @@
 // Tests how the L1 treats prefetches, and how it counts what they were good for.
 // SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
 #include "tests/support/catch.h"
-#include "tests/support/memory_rig.h"
+#include "tests/timing/memsys/requests.h"
 
 using namespace glint;
 using namespace glint::mem;
 
 namespace {
 
-Request read(Address line, Token token, uint8_t sectors = 1) {
-  return {line, sectors, false, Traffic::RtNode, token};
-}
 Request prefetch(Address line, uint8_t sectors = 1) {
   return {line, sectors, false, Traffic::RtPrefetch};
 }

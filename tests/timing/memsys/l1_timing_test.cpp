@@ -1,25 +1,16 @@
 // Tests the L1 and the round trip behind it, to the cycle.
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.h"
-#include "tests/support/memory_rig.h"
+#include "tests/timing/memsys/requests.h"
 
 using namespace glint;
 using namespace glint::mem;
 
 namespace {
 
-constexpr Address kLine = 128 * 1000;
-
 // Returns what the formula of memsys/README.md gives. One sector fits a default port in one cycle.
 Cycle l2_hit_round_trip(const Params& p) {
   return p.l1.miss_latency + 1 + p.noc.request_latency + p.l2.latency + 1 + p.noc.reply_latency;
-}
-
-Request read(Address line, Token token, uint8_t sectors = 1) {
-  return {line, sectors, false, Traffic::RtNode, token};
-}
-Request write(Address line, uint8_t sectors = 1, Traffic traffic = Traffic::ShaderGlobal) {
-  return {line, sectors, true, traffic, 0};
 }
 
 }  // namespace

@@ -5,20 +5,14 @@
 #include <vector>
 
 #include "tests/support/catch.h"
-#include "tests/support/memory_rig.h"
+#include "tests/timing/memsys/requests.h"
 
 using namespace glint;
 using namespace glint::mem;
 
 namespace {
 
-constexpr Address kLine = 128 * 1000;
-constexpr Cycle kL2Hit = 160;
-
-Request read(Address line, Token token, uint8_t sectors = 1) {
-  return {line, sectors, false, Traffic::RtNode, token};
-}
-Request write(Address line, uint8_t sectors, WordMask words) {
+Request masked_write(Address line, uint8_t sectors, WordMask words) {
   return {line, sectors, true, Traffic::ShaderGlobal, 0, words};
 }
 
@@ -138,7 +132,7 @@ TEST_CASE("a sector written in part is fetched when it is read, and only then") 
   params.l2.write_masks = true;
   MemoryRig rig(params);
   // The write covers sector 0 whole, and half of sector 1.
-  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 0b0011, 0x0000'0fff)));
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, masked_write(kLine, 0b0011, 0x0000'0fff)));
   rig.drain();
   CHECK(dram_reads(rig) == 0);
   CHECK(slice_of(rig, kLine).partial_writes.value() == 1);
@@ -154,8 +148,8 @@ TEST_CASE("writes that together cover a sector make it whole, and one word less 
     Params params = bare();
     params.l2.write_masks = true;
     MemoryRig rig(params);
-    REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 1, 0x0f)));
-    REQUIRE(rig.l1().access(rig.now() + 1, Client::Lsu, write(kLine, 1, rest)));
+    REQUIRE(rig.l1().access(rig.now(), Client::Lsu, masked_write(kLine, 1, 0x0f)));
+    REQUIRE(rig.l1().access(rig.now() + 1, Client::Lsu, masked_write(kLine, 1, rest)));
     rig.drain();
     CHECK((rig.read_latency(kLine, 1) == kL2Hit) == (rest == 0xf0));
   }
@@ -170,7 +164,7 @@ TEST_CASE("a sector written in part takes the slice for its interval, a whole on
     rig.read_latency(lines[1], 1, true);
     const Cycle start = rig.now();
     const size_t before = rig.answers().size();
-    REQUIRE(rig.l1().access(start, Client::Lsu, write(lines[0], 1, words)));
+    REQUIRE(rig.l1().access(start, Client::Lsu, masked_write(lines[0], 1, words)));
     REQUIRE(rig.l1().access(start + 1, Client::Lsu, read(lines[1], 7)));
     rig.drain();
     return std::pair(rig.answers().at(before).at - start, rig.memory().written_until() - start);
@@ -194,7 +188,7 @@ TEST_CASE(
     const std::vector<Address> lines = lines_of(rig.memory().map(), 0, writes);
     const Cycle start = rig.now();
     for (uint32_t i = 0; i < writes; ++i)
-      REQUIRE(rig.l1().access(start + i, Client::Lsu, write(lines[i], sectors, words)));
+      REQUIRE(rig.l1().access(start + i, Client::Lsu, masked_write(lines[i], sectors, words)));
     rig.drain();
     return rig.memory().written_until() - start;
   };
@@ -214,7 +208,7 @@ TEST_CASE(
 
 TEST_CASE("without masks a write covers its sectors, whatever its words") {
   MemoryRig rig(bare());
-  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(kLine, 1, 0x01)));
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, masked_write(kLine, 1, 0x01)));
   rig.drain();
   CHECK(rig.read_latency(kLine, 1) == kL2Hit);
   CHECK(dram_reads(rig) == 0);
@@ -226,7 +220,7 @@ TEST_CASE("a sector written in part is written back on eviction without having b
   params.dram.channels = 1;
   params.l2.slice_size = 2 * 128, params.l2.ways = 0;
   MemoryRig rig(params);
-  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, write(0, 1, 0x01)));
+  REQUIRE(rig.l1().access(rig.now(), Client::Lsu, masked_write(0, 1, 0x01)));
   rig.drain();
   for (Address i = 1; i < 3; ++i) rig.read_latency(i * 128, 1);
   const DramStats& dram = rig.memory().partition(0).dram().stats();

@@ -2,23 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <map>
+#include <vector>
 
 #include "tests/support/catch.h"
-#include "tests/support/memory_rig.h"
+#include "tests/timing/memsys/requests.h"
 
 using namespace glint;
 using namespace glint::mem;
 
 namespace {
 
-constexpr Address kLine = 128 * 1000;
-constexpr Cycle kL2Hit = 160;
-
 Request request(Address line, uint8_t sectors, Token token, bool write, Traffic traffic) {
   return {line, sectors, write, traffic, token};
-}
-Request read(Address line, Token token, uint8_t sectors = 1) {
-  return request(line, sectors, token, false, Traffic::RtNode);
 }
 Request atomic(Address line, Token token, uint8_t sectors = 1) {
   return request(line, sectors, token, false, Traffic::ShaderAtomic);

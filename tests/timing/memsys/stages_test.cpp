@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include "tests/support/catch.h"
-#include "tests/support/memory_rig.h"
+#include "tests/timing/memsys/requests.h"
 
 using namespace glint;
 using namespace glint::mem;
 
 namespace {
 
-constexpr Address kLine = 128 * 1000;
 using Split = std::array<uint64_t, size_t(Stage::Count)>;
 
 Split split_of(const L1Cache& l1) {
