@@ -18,10 +18,10 @@ def buffer(binding, kind, count, **more):
     return "[[buffer]]\n" + "".join(f"{name} = {repr(value) if not isinstance(value, str) else chr(34) + value + chr(34)}\n" for name, value in keys.items())
 
 
-def compute(shader, groups, constants, *buffers):
-    """Returns the pipeline file of a compute shader of the suite."""
+def compute(shader, groups, constants, *buffers, folder="shaders/compute"):
+    """Returns the pipeline file of a compute shader of the suite, or of another folder."""
     push = "".join(f"{name} = {value}\n" for name, value in constants.items())
-    return f'[compute]\nshader = "{ROOT}/shaders/compute/{shader}.comp"\n[launch]\ngroups = {groups}\n[push_constants]\n{push}' + "".join(buffers)
+    return f'[compute]\nshader = "{ROOT}/{folder}/{shader}.comp"\n[launch]\ngroups = {groups}\n[push_constants]\n{push}' + "".join(buffers)
 
 
 def kernel(name, grid, block, arguments):
@@ -54,6 +54,8 @@ def launches():
         "kmeans": compute("kmeans", [8192], {"points": points, "features": 8, "clusters": 5}, buffer(0, "f32", 8 * points), buffer(1, "f32", 40), buffer(2, "s32", points, init="zero")),
         "pathfinder": compute("pathfinder", [4630], {"columns": 1000000, "first_row": 1, "rows": 20}, buffer(0, "s32", 21000000, init="random", low=0, high=9),
                               buffer(1, "s32", 1000000, init="random", low=0, high=9), buffer(2, "s32", 1000000, init="zero")),
+        "product": compute("product", [64, 64], {"columns": 1024, "terms": 256}, buffer(0, "f32", 262144), buffer(1, "f32", 262144), buffer(2, "f32", cells, init="zero"), folder="bench/sampling"),
+        "lookup": compute("lookup", [8192], {"entries": 524288}, buffer(0, "f32", 524288), buffer(1, "f32", cells, init="zero"), folder="bench/sampling"),
         "mandelbrot": larger("mandelbrot", groups=[64, 64], size=[512, 512]),
         "occlusion": larger("ambient_occlusion", groups=[64, 128], size=[512, 512]),
         "spheres": larger("spheres", size=[512, 512]),

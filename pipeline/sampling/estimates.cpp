@@ -21,6 +21,8 @@ constexpr MethodError kErrorOfFullL2{.cycles = 0.07, .l1 = 0.01, .l2 = 0.03, .ut
 // These do for launches whose blocks touch lines of their own. Source: the same over the launches of
 // bench/sampled_launches.py.
 constexpr MethodError kErrorOfOwnLines{.cycles = 0.06, .l1 = 0.05, .l2 = 0.07, .utilisation = 0.05};
+// Neighbours in a row of a grid meet in one L1 more often on a part of the machine, where L1s are fewer.
+constexpr MethodError kErrorOfGrids{.cycles = 0.06, .l1 = 0.15, .l2 = 0.07, .utilisation = 0.05};
 
 constexpr double kLargestVariance = 0.25;  // of whether a read hits
 
@@ -45,14 +47,14 @@ Uncertain sum_over_strata(const SampleCounts& counts, BatchCount timed, uint64_t
   for (size_t s = 0; s < counts.work.size(); ++s) {
     const std::vector<BlockWork>& blocks = counts.work[s];
     const auto n = double(blocks.size()), size = double(counts.plan->sizes[s]);
-    if (blocks.empty()) continue;
+    if (blocks.empty() || size == 0) continue;
     double total = 0, differences = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {
       total += double(blocks[i].*of);
       if (i > 0) differences += std::pow(double(blocks[i].*of) - double(blocks[i - 1].*of), 2);
     }
     sum.value += size * total / n;
-    if (n > 1) sum.variance += size * size * (1 - n / size) / n * differences / (2 * (n - 1));
+    if (n > 1) sum.variance += size * size * std::max(0.0, 1 - n / size) / n * differences / (2 * (n - 1));
   }
   return sum;
 }
@@ -80,9 +82,10 @@ std::vector<Estimate> estimate(const SampleCounts& counts) {
   const double scale = counts.plan->scale;
   const bool has_rays = at(counts.total, BatchCount::Nodes) > 0;
   const BatchCount measure = has_rays ? BatchCount::Nodes : BatchCount::Instructions;
-  const MethodError& own = !counts.writes_are_missing ? kErrorOfOwnLines
-                           : counts.stacks_leave_l2   ? kErrorOfFullL2
-                                                      : kError;
+  const MethodError& own = counts.plan->row > 0         ? kErrorOfGrids
+                           : !counts.writes_are_missing ? kErrorOfOwnLines
+                           : counts.stacks_leave_l2     ? kErrorOfFullL2
+                                                        : kError;
   RunSums sums;
   sums.instructions = sum_over_strata(counts, BatchCount::Instructions, &BlockWork::instructions);
   if (has_rays) sums.nodes = sum_over_strata(counts, BatchCount::Nodes, &BlockWork::nodes);

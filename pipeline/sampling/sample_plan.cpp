@@ -22,7 +22,13 @@ constexpr uint32_t kLeastSegments = 10;
 constexpr uint32_t kLeastWaves = 3;  // the first two start cold, and what follows them is the steady state
 // Choice: of the blocks in front of a segment, and of all others, one in so many runs functionally.
 constexpr uint32_t kLeadStep = 3, kRestStep = 12;
-constexpr uint32_t kSurveyStep = 16, kLinesSurveyed = 128;
+constexpr uint32_t kSurveyStep = 16;                 // where costs are asked for
+constexpr uint32_t kLinesStep = 8, kSurveyed = 512;  // where lines are: so many blocks, and one in 8 at most
+// Choice: segments of a grid of several rows are twice as long, because pieces of a row open rows of DRAM
+// anew.
+constexpr uint32_t kWavesInGrid = 2;
+// Lines that many blocks touch matter where they are more than this part of all.
+constexpr double kLeastShared = 0.1;
 
 // Names blocks from `begin` up to `end`.
 struct Range {
@@ -71,8 +77,11 @@ class Planner {
       uint32_t block = first + numbers_.below(step);
       const uint32_t last = std::min(first + step, end) - 1;
       if (survey_.has(block) && last > first) block = block < last ? block + 1 : block - 1;
-      if (block <= last && !survey_.has(block)) plan_.warm.push_back({block, stratum});
-      for (uint32_t one = first; one <= last; ++one) ++size_of(one, stratum);
+      // Where blocks share lines with neighbours alone, those far from a segment do not run, and surveyed
+      // blocks stand for them.
+      const bool runs = stratum == Stratum::Inside || survey_.is_shared();
+      if (runs && block <= last && !survey_.has(block)) plan_.warm.push_back({block, stratum});
+      for (uint32_t one = first; one <= last; ++one) ++size_of(one, runs ? stratum : Stratum::Surveyed);
     }
     done_ = end;
   }
@@ -96,7 +105,7 @@ std::vector<double> costs_of_cells(const SamplePlaces& places, const Survey& sur
     const uint32_t end = cell + 1 < out.size() ? places.cell_begin(cell + 1) : places.num_blocks;
     double sum = 0;
     uint32_t number = 0;
-    for (; next < survey.costs.size() && survey.first + next * survey.step < end; ++next)
+    for (; next < survey.costs.size() && survey.block(uint32_t(next)) < end; ++next)
       sum += survey.costs[next], ++number;
     out[cell] = number ? sum / number : cell ? out[cell - 1] : 0;
   }
@@ -165,12 +174,41 @@ Survey survey_for(const SampleOptions& options, uint32_t blocks_of_lines) {
                     "it has more than 0 % and at most 50 % of a launch's blocks");
   const bool needs_costs = way_of(options)->needs_costs();
   if (!blocks_of_lines && !needs_costs) return {};
-  const uint32_t step = needs_costs ? kSurveyStep : std::max(kSurveyStep, blocks_of_lines / kLinesSurveyed);
-  SplitMix numbers(options.seed);
+  const uint32_t step = needs_costs ? kSurveyStep : std::max(kLinesStep, blocks_of_lines / kSurveyed);
   return {.step = step,
-          .first = numbers.below(step),
+          .seed = options.seed,
           .asks = blocks_of_lines ? Question::Lines : Question::Cost,
-          .costs = {}};
+          .costs = {},
+          .shared = {}};
+}
+
+uint32_t Survey::block(uint32_t index) const {
+  // Blocks at equal distances would lie in few columns of a grid.
+  SplitMix numbers(asks == Question::Lines ? seed + 0x9e3779b97f4a7c15ull * (index + 1) : seed);
+  return index * step + numbers.below(step);
+}
+
+bool Survey::is_shared() const {
+  return asks != Question::Lines || double(shared.size()) > kLeastShared * double(lines);
+}
+
+std::vector<Address> Survey::fetched_before(double share) const {
+  constexpr uint32_t kParts = 1u << 20;
+  SplitMix numbers(seed);
+  std::vector<Address> out;
+  if (!is_shared()) return out;
+  for (const Address line : shared)
+    if (numbers.below(kParts) >= share * kParts) out.push_back(line);
+  return out;
+}
+
+std::vector<uint32_t> Survey::left_out_by(const SamplePlan& plan) const {
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < costs.size(); ++i)
+    if (!std::ranges::binary_search(plan.timed, block(i)) &&
+        !std::ranges::binary_search(plan.warm, block(i), {}, &WarmBlock::block))
+      out.push_back(i);
+  return out;
 }
 
 SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32_t resident, uint32_t scale,
@@ -183,17 +221,20 @@ SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32
                     100 * options.share, num_timed, num_blocks, resident),
         fmt::format("a sample needs {} times as many; take a larger share, a larger launch, or all of it",
                     kLeastWaves));
+  const bool has_own_lines = survey.asks == Question::Lines;
+  const uint32_t group = has_own_lines ? 1 : scale;
   // A batch begins when the first two waves have started, and then runs mostly what had started half a wave
   // earlier. The last blocks of all run when no batch is open any more.
   const uint32_t filling = resident + resident / 2, behind = resident / 2,
                  rest = num_timed - filling - behind,
-                 length = std::max(1u, std::min(resident, rest / kLeastSegments)), segments = rest / length;
-  // Surveyed blocks have run, so groups of one block leave them out.
-  const uint32_t group = survey.asks == Question::Lines ? 1 : scale;
+                 longest = has_own_lines && row > 0 ? kWavesInGrid * resident : resident,
+                 length = std::max(1u, std::min(longest, rest / kLeastSegments)), segments = rest / length;
   SamplePlaces places{num_blocks, segments, length * group, {}};
   if (survey.step) places.costs = costs_of_cells(places, survey);
   SamplePlan plan;
   plan.num_blocks = num_blocks, plan.scale = scale, plan.group = group;
+  plan.num_surveyed = has_own_lines ? 0 : uint32_t(survey.costs.size());
+  plan.row = has_own_lines ? row : 0;
   SplitMix numbers(options.seed);
   const std::vector<Range> ranges =
       ranges_of(way_of(options)->begins(places, numbers),
@@ -203,7 +244,9 @@ SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32
     const uint32_t begin = ranges[s].begin, lead = begin - std::min(begin, places.span + places.span / 2),
                    in_front = s == 0 ? filling : 0, after = s + 1 == segments ? behind : 0;
     planner.add_every(Stratum::Rest, lead, kRestStep);
-    planner.add_every(Stratum::Lead, begin, kLeadStep);
+    // What a segment's first block shares with its neighbour would have been fetched by that.
+    planner.add_every(Stratum::Lead, begin - std::min(begin, has_own_lines ? 1u : 0u), kLeadStep);
+    planner.add_every(Stratum::Inside, begin, 1);
     if (in_front) planner.begin_segment();
     planner.add_timed(in_front);
     planner.begin_segment();
@@ -213,14 +256,12 @@ SamplePlan plan_sample(const SampleOptions& options, uint32_t num_blocks, uint32
   return plan;
 }
 
-double footprint_share(const Survey& survey, const SamplePlan& plan) {
-  const auto surveyed = double(survey.costs.size());
-  if (survey.asks != Question::Lines || survey.lines == 0) return 1;
-  const double of_each = double(survey.lines_of_one) / surveyed;
-  const auto touched_by = [&](size_t blocks) {
-    return double(survey.lines) + of_each * (double(blocks) - surveyed);
-  };
-  return std::clamp(touched_by(plan.timed.size() + plan.warm.size()) / touched_by(plan.num_blocks), 0.0, 1.0);
+double footprint_share(const Survey& survey, const SamplePlan& plan, double l2_lines) {
+  if (survey.asks != Question::Lines) return 1;
+  // Choice: lines that must not leave a cache of several ways need a quarter more than their number.
+  const double room = std::min(l2_lines, 1.25 * double(survey.shared.size()));
+  const double blocks = double(plan.timed.size() + plan.warm.size()) / plan.num_blocks;
+  return (room + std::min(1.0, blocks) * (l2_lines - room)) / l2_lines;
 }
 
 }  // namespace glint::pipeline

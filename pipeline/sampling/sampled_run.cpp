@@ -171,12 +171,21 @@ SampledRun run_sampled(const exec::World& world, const GpuParams& gpu, const Sam
   std::vector<BlockWork> surveyed = run_survey(world, gpu, survey, result.faults);
   run.plan =
       plan_sample(options, num_blocks, resident_blocks(cut(gpu, scale), world), scale, survey, row_of(world));
+  if (survey.asks == Question::Lines) {
+    std::vector<BlockWork> left_out;
+    for (const uint32_t index : survey.left_out_by(run.plan)) left_out.push_back(surveyed[index]);
+    if (!left_out.empty()) surveyed = std::move(left_out);
+  }
   const bool is_shared = !is_private && scale > 1 && stacks_in_l2(gpu, world) > 1;
-  const GpuParams part = cut(gpu, scale, footprint_share(survey, run.plan));
+  const double l2_lines =
+      double(gpu.memory.l2.slice_size * gpu.memory.num_slices()) / double(gpu.memory.line);
+  const GpuParams part = cut(gpu, scale, footprint_share(survey, run.plan, l2_lines));
   auto machine = std::make_unique<TimingMachine>(part, world, false, HostOptions{.threads = threads});
   Sampler sampler(run.plan, *machine, world, std::move(surveyed),
                   is_private ? mem::Displaced::WrittenLater : mem::Displaced::Lost, is_shared);
   if (is_shared) machine->memory().share_with(scale - 1);
+  for (const Address line : survey.fetched_before(double(run.plan.timed.size()) / num_blocks))
+    machine->memory().warm(line, uint8_t((1u << gpu.memory.line / mem::kSectorBytes) - 1));
   result.cycles = machine->run(watch, &sampler);
   result.end = machine->end();
   result.progress = machine->progress();

@@ -1,35 +1,44 @@
-// Runs every n-th block on the functional machine.
+// Runs one of so many neighbouring blocks on the functional machine.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/sampling/survey.h"
 
 #include <algorithm>
 #include <unordered_map>
 
+#include "exec/block_memory.h"
 #include "pipeline/sampling/warmer.h"
 
 namespace glint::pipeline {
 namespace {
 
-// Notes which lines blocks touch.
+// Choice: a line that so many surveyed blocks touch belongs to all blocks. Neighbours of which each touches a
+// line's end are fewer.
+constexpr uint32_t kBlocksOfShared = 4;
+
+// Notes how many blocks touch each line. Blocks come one after the other.
 class Lines {
  public:
   void touch(Address line, uint32_t block) {
-    const auto [at, is_new] = first_.emplace(line, Toucher{block});
-    if (is_new)
-      ++of_one_;
-    else if (!at->second.is_shared && at->second.block != block)
-      at->second.is_shared = true, --of_one_;
+    Touchers& touchers = of_[line];
+    if (touchers.number > 0 && touchers.last == block) return;
+    touchers.last = block;
+    ++touchers.number;
   }
-  uint64_t all() const { return first_.size(); }
-  uint64_t of_one() const { return of_one_; }
+  uint64_t all() const { return of_.size(); }
+  // Returns those that many blocks touch, ascending.
+  std::vector<Address> shared() const {
+    std::vector<Address> out;
+    for (const auto& [line, touchers] : of_)
+      if (touchers.number >= kBlocksOfShared) out.push_back(line);
+    std::ranges::sort(out);
+    return out;
+  }
 
  private:
-  struct Toucher {
-    uint32_t block = 0;  // the first one
-    bool is_shared = false;
+  struct Touchers {
+    uint32_t last = 0, number = 0;
   };
-  std::unordered_map<Address, Toucher> first_;
-  uint64_t of_one_ = 0;
+  std::unordered_map<Address, Touchers> of_;
 };
 
 }  // namespace
@@ -38,22 +47,27 @@ std::vector<BlockWork> run_survey(const exec::World& world, const GpuParams& gpu
                                   exec::FaultLog& passed) {
   std::vector<BlockWork> out;
   if (survey.step == 0) return out;
+  const bool is_dry = survey.asks == Question::Lines;
+  exec::World quiet;
+  if (is_dry) quiet = world, quiet.prints = nullptr;
+  const exec::MemoryUses uses(*world.memory);
   Lines lines;
-  uint32_t block = survey.first;
+  uint32_t block = 0;
   const auto note = [&](Address line, uint8_t, mem::Touch) {
-    if (survey.asks == Question::Lines) lines.touch(line, block);
+    if (is_dry) lines.touch(line, block);
     return 0u;
   };
-  Warmer runner(world, gpu.core.instruction_budget, gpu.memory, note, Written::AsRead);
-  for (; block < exec::num_blocks(world); block += survey.step) {
-    if (survey.asks == Question::Lines) runner.forget();
+  Warmer runner(is_dry ? quiet : world, gpu.core.instruction_budget, gpu.memory, note, Written::AsRead);
+  for (uint32_t i = 0; (block = survey.block(i)) < exec::num_blocks(world); ++i) {
+    exec::BlockMemory apart(uses);
+    if (is_dry) runner.forget(), runner.use(&apart);
     const WorkCounts counts = runner.run(block);
     out.push_back({counts.instructions(), counts.rays.nodes});
   }
-  survey.lines = lines.all(), survey.lines_of_one = lines.of_one();
+  survey.lines = lines.all(), survey.shared = lines.shared();
   const bool has_rays = std::ranges::any_of(out, [](const BlockWork& one) { return one.nodes > 0; });
   for (const BlockWork& one : out) survey.costs.push_back(double(has_rays ? one.nodes : one.instructions));
-  passed.add(runner.passed());
+  if (!is_dry) passed.add(runner.passed());
   return out;
 }
 

@@ -12,9 +12,10 @@
 
 namespace glint::pipeline {
 
-// Runs the blocks of the survey, and fills in what was asked. A block costs the nodes that its rays visit,
-// or, in a launch without rays, its instructions. Returns what they did. Faults that were let pass are added
-// to `passed`. Throws Error(Exit::Fault) as run_functional() does.
+// Runs the blocks of the survey, and fills in what was asked. Where lines are asked for, blocks leave nothing
+// in memory, print nothing, and may run again. A block costs the nodes that its rays visit, or, in a launch
+// without rays, its instructions. Returns what they did. Faults that were let pass are added to `passed`.
+// Throws Error(Exit::Fault) as run_functional() does.
 std::vector<BlockWork> run_survey(const exec::World& world, const GpuParams& gpu, Survey& survey,
                                   exec::FaultLog& passed);
 

@@ -19,6 +19,8 @@ class Warmer {
   // Runs block `index` and returns what it did. Throws Error(Exit::Fault) as run_functional()
   // does.
   WorkCounts run(uint32_t index);
+  // Lets blocks leave what they do to memory in `memory`, which may be null.
+  void use(exec::BlockMemory* memory) { executor_.use(memory); }
   // Forgets what was handed on, so that the sink hears of all lines of the next block.
   void forget() { touches_.forget(); }
   const exec::FaultLog& passed() const { return executor_.passed(); }  // faults that were let pass

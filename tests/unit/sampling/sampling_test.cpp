@@ -75,7 +75,7 @@ TEST_CASE("Surveyed blocks are neither timed nor run a second time", "[sampling]
     const SampleOptions options{.share = 0.05, .seed = 3, .by = "cost"};
     Survey survey = survey_for(options);
     REQUIRE(survey.step > 0);
-    for (uint32_t block = survey.first; block < 8192; block += survey.step) survey.costs.push_back(block);
+    for (uint32_t i = 0; survey.block(i) < 8192; ++i) survey.costs.push_back(survey.block(i));
     const SamplePlan plan = plan_sample(options, 8192, 42, scale, survey);
     for (const uint32_t block : plan.timed) REQUIRE_FALSE(survey.has(block));
     for (const WarmBlock& warm : plan.warm) REQUIRE_FALSE(survey.has(warm.block));
@@ -90,35 +90,76 @@ TEST_CASE("Where lines were asked for, segments are whole and the blocks of the 
   const SampleOptions options{.share = 0.05, .seed = 3};
   Survey survey = survey_for(options, 8192);
   REQUIRE(survey.asks == Question::Lines);
-  REQUIRE(survey.step == 64);
-  survey.costs.assign(128, 1.0);
+  REQUIRE(survey.step == 16);
+  survey.costs.assign(512, 1.0);
   const SamplePlan plan = plan_sample(options, 8192, 42, 4, survey, 128);
   CHECK(plan.group == 1);
   CHECK(plan.scale == 4);
   std::set<uint32_t> there(plan.timed.begin(), plan.timed.end());
   for (const WarmBlock& warm : plan.warm) there.insert(warm.block);
   CHECK(there.size() == plan.timed.size() + plan.warm.size());
-  for (size_t i = plan.starts[1]; i < plan.timed.size(); ++i) {
-    const uint32_t block = plan.timed[i];
-    const bool begins = std::ranges::find(plan.starts, i) != plan.starts.end();
-    if (!begins && !there.contains(block - 1)) REQUIRE(survey.has(block - 1));
-    if (block >= 128 && !there.contains(block - 128)) REQUIRE(survey.has(block - 128));
+  for (const uint32_t block : plan.timed) {
+    REQUIRE((block == 0 || there.contains(block - 1)));
+    REQUIRE((block < 128 || there.contains(block - 128)));
   }
+  // Nothing else runs, and surveyed blocks stand for it.
+  for (const WarmBlock& warm : plan.warm) {
+    REQUIRE(warm.stratum == Stratum::Inside);
+    REQUIRE((there.contains(warm.block + 1) || there.contains(warm.block + 128)));
+  }
+  CHECK(plan.sizes == std::array{uint32_t(plan.warm.size()), 0u, 0u, uint32_t(8192 - there.size())});
+  CHECK(plan.num_functional() == plan.warm.size());
+  const std::vector<uint32_t> stand_for_others = survey.left_out_by(plan);
+  CHECK(stand_for_others.size() > 400);
+  CHECK(stand_for_others.size() < 512);
+  for (const uint32_t index : stand_for_others) REQUIRE_FALSE(there.contains(survey.block(index)));
 }
 
-TEST_CASE("A part's L2 has the share of the lines that the blocks of the sample touch", "[sampling]") {
-  Survey survey{.step = 64, .first = 0, .asks = Question::Lines, .costs = std::vector<double>(100, 1.0)};
+TEST_CASE("Where blocks that lie far apart share lines, some of the others run, too", "[sampling]") {
+  const SampleOptions options{.share = 0.05, .seed = 3};
+  Survey survey = survey_for(options, 8192);
+  survey.costs.assign(512, 1.0);
+  survey.lines = 100, survey.shared.resize(10);
+  CHECK_FALSE(survey.is_shared());
+  CHECK(survey.fetched_before(0).empty());
+  survey.shared.resize(11);
+  CHECK(survey.is_shared());
+  const SamplePlan plan = plan_sample(options, 8192, 42, 4, survey);
+  CHECK(plan.sizes[size_t(Stratum::Surveyed)] == 0);
+  // The L2 holds all of the shared lines but for the sample's share of them.
+  survey.shared.clear();
+  for (Address line = 0; line < 1'000'000; line += 128) survey.shared.push_back(line);
+  const auto held = double(survey.fetched_before(0.25).size());
+  CHECK(held / double(survey.shared.size()) == Approx(0.75).epsilon(0.03));
+  CHECK(survey.fetched_before(0).size() == survey.shared.size());
+  CHECK(survey.fetched_before(1).empty());
+  CHECK(std::ranges::count(plan.warm, Stratum::Rest, &WarmBlock::stratum) > 400);
+}
+
+TEST_CASE("Blocks whose lines are asked for lie in different columns", "[sampling]") {
+  const Survey survey = survey_for({.share = 0.05, .seed = 3}, 8192);
+  std::set<uint32_t> places;
+  for (uint32_t i = 0; i < 512; ++i) {
+    const uint32_t block = survey.block(i);
+    REQUIRE(block / survey.step == i);
+    places.insert(block % survey.step);
+    CHECK_FALSE(survey.has(block));  // It has left nothing behind.
+  }
+  CHECK(places.size() == 16);
+}
+
+TEST_CASE("A part's L2 has room for what all blocks read, and its share of the rest", "[sampling]") {
+  Survey survey{.step = 64, .asks = Question::Lines, .costs = std::vector<double>(100, 1.0), .shared = {}};
   SamplePlan plan;
   plan.num_blocks = 6400;
   plan.timed.resize(600), plan.warm.resize(1000);
-  survey.lines = 500, survey.lines_of_one = 0;  // All blocks touch the same lines.
-  CHECK(footprint_share(survey, plan) == 1);
-  survey.lines_of_one = 500;  // Each has five for itself.
-  CHECK(footprint_share(survey, plan) == Approx(0.25));
-  survey.lines = 2000;  // 1500 are shared.
-  CHECK(footprint_share(survey, plan) == Approx((1500 + 5 * 1600.0) / (1500 + 5 * 6400.0)));
+  CHECK(footprint_share(survey, plan, 6000) == Approx(0.25));  // Each has lines for itself.
+  survey.shared.resize(1600);  // These keep their room, and a quarter more. Of the rest a quarter is left.
+  CHECK(footprint_share(survey, plan, 6000) == Approx((2000 + 4000 * 0.25) / 6000));
+  CHECK(footprint_share(survey, plan, 2000) == 1);
+  CHECK(footprint_share(survey, plan, 1000) == 1);
   survey.asks = Question::Cost;
-  CHECK(footprint_share(survey, plan) == 1);
+  CHECK(footprint_share(survey, plan, 6000) == 1);
 
   const GpuParams gpu = test::preset("mobile");
   CHECK(cut(gpu, 4).memory.l2.slice_size == 4 * gpu.memory.l2.slice_size);
