@@ -155,7 +155,10 @@ std::vector<uint32_t> glsl_to_spirv(const std::string& path, const GlslOptions& 
   if (!stage)
     throw UserError(
         {path, 0, 0}, "unknown shader stage",
-        "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp, or add .glsl to that");
+        path.ends_with(".ptx")
+            ? "`glint init FILE.toml KERNEL.ptx` writes a launch of a PTX kernel, and `glint run FILE.toml` "
+              "runs it"
+            : "name the file .rgen, .rint, .rahit, .rchit, .rmiss, .rcall or .comp, or add .glsl to that");
   const std::optional<std::string> source = read_regular_file(path);
   if (!source) throw UserError({path, 0, 0}, "cannot read the shader");
   return glsl_text_to_spirv(*source, path, *stage, options);

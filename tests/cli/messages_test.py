@@ -68,6 +68,9 @@ class Shaders(GlintTest):
         self.assertIn(".stage compute", said.stdout)
         self.expect(2, ["unknown shader stage"], "compile", self.write("main.glsl", COMPUTE))
 
+    def test_ptx_is_run_and_not_compiled(self):
+        self.expect(2, ["k.ptx: error: unknown shader stage", "`glint init FILE.toml KERNEL.ptx`"], "compile", self.write("k.ptx", ".version 8.0\n"))
+
     def test_companions_of_a_ray_generation_shader_have_the_same_ending(self):
         head = "#version 460\n#extension GL_EXT_ray_tracing : require\n"
         self.write("a.rgen.glsl", head + "layout(set = 0, binding = 0) uniform accelerationStructureEXT top;\n"

@@ -35,6 +35,13 @@ class Paper(GlintTest):
         self.assertIn(" files/mobile ", self.glint("paper", "--list", "--assets", ".").stdout)
         self.assertFalse((self.folder / "out").exists())
 
+    def test_a_folder_that_cannot_be_made_is_told_before_anything_runs(self):
+        (self.folder / "file").write_text("")
+        done = self.glint("paper", "--subset", "--out", "file/out")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stdout, "")
+        self.assertIn("--out: the folder 'file/out' cannot be made", done.stderr)
+
     def end_after(self, name, signal_number):
         """Starts the trial, sends the signal to all its processes once a set is complete, and returns its exit code and stderr."""
         process = subprocess.Popen([GLINT, *TRIAL], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, "GLINT_ASSETS": ""})

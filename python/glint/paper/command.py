@@ -64,8 +64,17 @@ def _paper(given: argparse.Namespace) -> int:
         left = sum(one.weight for one in runs.sets if not runs.is_done(one))
         print(f"{len(runs.sets)} sets, {sum(map(runs.is_done, runs.sets))} of them complete; about {text_of(left)} of processor time left")
         return 0
+    _make_folder(given.out)
     failed = [] if given.report else run(runs, glint, given.jobs)
     return _conclude(runs, glint, options, failed)
+
+
+def _make_folder(folder: str) -> None:
+    """Makes the folder of the results before anything runs, so that a folder that cannot be made is told once."""
+    try:
+        pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise GlintError(f"--out: the folder '{folder}' cannot be made ({error.strerror}); name another one") from None
 
 
 def _conclude(runs: Runs, glint: str, options: Options, failed: list[str]) -> int:
