@@ -2,7 +2,9 @@
 // density.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "scenes/generate/distance_field.h"
 #include "scenes/lumibench/builders.h"
@@ -13,19 +15,32 @@ namespace {
 constexpr float kCell = 1.602f;  // chosen for about 448.9K triangles
 constexpr int kFeathers = 9;     // feathers of a wing
 
-// Returns the distance to a wing. The figure looks along +z with its right hand at +x; `m` has x = |x|.
-float wing_distance(const Vec3& m) {
-  constexpr Vec3 kRoot{16, 405, -34}, kWrist{105, 500, -66};
-  float d = limb_distance(m, kRoot, 15, kWrist, 11);
+constexpr Vec3 kRoot{16, 405, -34}, kWrist{105, 500, -66};  // where a wing begins and bends
+
+struct Feather {
+  Vec3 base, direction, tip;
+};
+std::array<Feather, kFeathers> make_feathers() {
+  std::array<Feather, kFeathers> out;
   for (int i = 0; i < kFeathers; ++i) {
     const float t = float(i) / (kFeathers - 1);
-    const Vec3 base = kRoot + (kWrist - kRoot) * t;
     const Vec3 direction = normalized({0.10f + 0.62f * t, -1 + 0.25f * t, -0.10f});
     const float reach = 110 + 150 * t - 40 * t * t;
+    out[size_t(i)] = {
+        kRoot + (kWrist - kRoot) * t, direction, {direction[0] * reach, direction[1] * reach, 0}};
+  }
+  return out;
+}
+
+// Returns the distance to a wing. The figure looks along +z with its right hand at +x; `m` has x = |x|.
+float wing_distance(const Vec3& m) {
+  static const std::array<Feather, kFeathers> kAll = make_feathers();
+  float d = limb_distance(m, kRoot, 15, kWrist, 11);
+  for (size_t i = 0; i < kAll.size(); ++i) {
+    const auto& [base, direction, tip] = kAll[i];
     // A feather is a flat limb, squeezed along z and stepped so that each feather lies over the next.
     const Vec3 q = m - base;
     const Vec3 flat{q[0], q[1], (q[2] - direction[2] * dot(q, direction) + (i % 2 ? 3.0f : -3.0f)) * 2.6f};
-    const Vec3 tip{direction[0] * reach, direction[1] * reach, 0};
     d = blended_union(d, limb_distance(flat, {0, 0, 0}, 13, tip, 8) * 0.45f, 3);
   }
   return d;
