@@ -83,7 +83,7 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
   if (row.is_sequence) [[unlikely]]
     start_sequence(at, row, issued.pc, now);
   else
-    at.scoreboard.set(row, core_.table, {now + late + row.latency, row.wait},
+    at.scoreboard.set(row, core_.table.defs(row), {now + late + row.latency, row.wait},
                       row.alternates ? Pipe::Count : row.pipe);
 }
 

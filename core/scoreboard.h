@@ -37,12 +37,12 @@ class Scoreboard {
     for (uint16_t r : registers) last = later(last, entries_[r]);
     return {ready_at(last), wait_of(last)};
   }
-  // Does the same for the registers that `row` of the table needs.
-  Ready ready(const IssueRow& row, const IssueTable& table, Ready start) const {
+  // Does the same for `uses`, the registers of `row`.
+  Ready ready(const IssueRow& row, std::span<const uint16_t> uses, Ready start) const {
     Entry last = entry(start);
     for (uint16_t r : row.first_uses) last = later(last, entries_[r]);
-    if (row.num_uses > IssueRow::kFirstUses) [[unlikely]]
-      for (uint16_t r : table.uses(row).subspan(IssueRow::kFirstUses)) last = later(last, entries_[r]);
+    if (uses.size() > row.first_uses.size()) [[unlikely]]
+      for (uint16_t r : uses.subspan(row.first_uses.size())) last = later(last, entries_[r]);
     return {ready_at(last), wait_of(last)};
   }
   // Does the same when results reach other pipes `crossing` cycles later than their own and guards `guard`
@@ -95,11 +95,11 @@ class Scoreboard {
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {
     for (uint16_t r : registers) entries_[r] = entry(value, from);
   }
-  // Does the same for the destinations of `row` of the table.
-  void set(const IssueRow& row, const IssueTable& table, Ready value, Pipe from) {
+  // Does the same for `defs`, the destinations of `row`.
+  void set(const IssueRow& row, std::span<const uint16_t> defs, Ready value, Pipe from) {
     entries_[row.first_def] = entry(value, from);
-    if (row.num_defs > 1) [[unlikely]]
-      set(table.defs(row).subspan(1), value, from);
+    if (defs.size() > 1) [[unlikely]]
+      set(defs.subspan(1), value, from);
   }
 
  private:

@@ -41,7 +41,7 @@ class WarpSlots {
   void refresh(WarpSlot& at, Cycle now) {
     if (!is_plain_ || at.sequence.is_under_way()) return refresh_in_full(at, now);
     const IssueRow& row = table_.row(at.warp.simt.pc);
-    const Scoreboard::Ready ready = at.scoreboard.ready(row, table_, at.front);
+    const Scoreboard::Ready ready = at.scoreboard.ready(row, table_.uses(row), at.front);
     prefetch_registers(at.warp, row);
     at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door});
   }
