@@ -66,6 +66,7 @@ class OperandWheel {
     if (next_far_ != kNever && next_far_ <= now + kCycles) [[unlikely]]
       bring_near();
   }
+
   // Goes on by one cycle while no warp lies apart.
   void advance() {
     const auto cycle = size_t(++now_ % kCycles);

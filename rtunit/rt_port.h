@@ -18,7 +18,8 @@ namespace glint::rt {
 //    their `states[lane]` until each is Done, needs a shader or has Gathered candidates. The caller keeps the
 //    storage and does not touch it meanwhile.
 //  - Exactly one completion comes back for each submit, at a later cycle.
-//  - can_accept() and has_completion() hold what set_room() and set_completion() were given last.
+//  - The unit calls set_room() and set_completion() whenever the answer of can_accept() or has_completion()
+//    changes. has_completion() may hold while no warp comes back, but not the other way round.
 //  - A warp that needs shaders is given back whole. The core runs them, decides the candidates
 //    (accept_candidate() and the others of traversal.h) and submits the lanes that still traverse again.
 class RtPort {
