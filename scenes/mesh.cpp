@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "base/parallel_ranges.h"
+
 namespace glint::scenes {
 namespace {
 
@@ -61,16 +63,24 @@ void place(Model& model, const Placement& placement) {
   }
 }
 
-void compute_smooth_normals(Model& model) {
-  for (Vertex& vertex : model.vertices) vertex.normal = {};
-  for (size_t i = 0; i + 2 < model.indices.size(); i += 3) {
-    Vertex* corner[3];
-    for (size_t k = 0; k < 3; ++k) corner[k] = &model.vertices[model.indices[i + k]];
-    const Vec3 normal = normalized(
-        cross(corner[1]->position - corner[0]->position, corner[2]->position - corner[0]->position));
-    for (Vertex* vertex : corner) vertex->normal = vertex->normal + normal;
-  }
-  for (Vertex& vertex : model.vertices) vertex.normal = normalized(vertex.normal);
+void compute_smooth_normals(Model& model, uint32_t threads) {
+  // Each range of vertices takes all triangles in their order, so that a sum is the same at any number of
+  // threads.
+  const size_t vertices = model.vertices.size();
+  const size_t range = (vertices + std::max(threads, 1u) - 1) / std::max(threads, 1u);
+  parallel_ranges(vertices, std::max<size_t>(range, 1), threads, [&model](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) model.vertices[v].normal = {};
+    for (size_t i = 0; i + 2 < model.indices.size(); i += 3) {
+      const uint32_t* corner = &model.indices[i];
+      const auto is_here = [begin, end](size_t v) { return v - begin < end - begin; };
+      if (!is_here(corner[0]) && !is_here(corner[1]) && !is_here(corner[2])) continue;
+      const auto position = [&model, corner](size_t k) { return model.vertices[corner[k]].position; };
+      const Vec3 normal = normalized(cross(position(1) - position(0), position(2) - position(0)));
+      for (size_t k = 0; k < 3; ++k)
+        if (is_here(corner[k])) model.vertices[corner[k]].normal = model.vertices[corner[k]].normal + normal;
+    }
+    for (size_t v = begin; v < end; ++v) model.vertices[v].normal = normalized(model.vertices[v].normal);
+  });
 }
 
 Bounds bounds(const Model& model) {

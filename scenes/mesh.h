@@ -34,8 +34,8 @@ struct Placement {
 void place(Model& model, const Placement& placement);
 
 // Sets each normal to the normalised sum of the unit normals of the faces around it. The OBJ loader does this
-// for files without normals.
-void compute_smooth_normals(Model& model);
+// for files without normals. Up to `threads` threads of the host work; they do not show in the normals.
+void compute_smooth_normals(Model& model, uint32_t threads = 1);
 
 // Holds the smallest and the largest coordinates of the vertices. An empty model has lower > upper.
 struct Bounds {

@@ -62,8 +62,12 @@ std::map<std::string, Source> list_sources(const fs::path& folder) {
 
 class FolderLoader {
  public:
-  FolderLoader(Scene& scene, const FolderRules& rules, fs::path folder)
-      : scene_(scene), rules_(rules), folder_(std::move(folder)), sources_(list_sources(folder_)) {
+  FolderLoader(Scene& scene, const FolderRules& rules, fs::path folder, uint32_t threads)
+      : scene_(scene),
+        rules_(rules),
+        folder_(std::move(folder)),
+        threads_(threads),
+        sources_(list_sources(folder_)) {
     for (const auto& [name, source] : sources_)
       if (source.is_copy) wanted_.insert(source.file);
   }
@@ -105,8 +109,8 @@ class FolderLoader {
 
   Model load(const std::string& file) {
     const size_t first = scene_.materials.size();
-    Model model =
-        load_obj((folder_ / file).string(), scene_.materials, rules_.textures ? &scene_.textures : nullptr);
+    Model model = load_obj((folder_ / file).string(), scene_.materials,
+                           {.textures = rules_.textures ? &scene_.textures : nullptr, .threads = threads_});
     if (wanted_.contains(file)) keep(file, model, int32_t(first));
     return model;
   }
@@ -120,7 +124,7 @@ class FolderLoader {
   Model copy(const std::string& name, const Source& source) {
     if (!bases_.contains(source.file)) {
       std::vector<Material> unused;
-      keep(source.file, load_obj((folder_ / source.file).string(), unused), 0);
+      keep(source.file, load_obj((folder_ / source.file).string(), unused, {.threads = threads_}), 0);
     }
     const auto first = int32_t(scene_.materials.size());
     const std::vector<Material> own = load_materials((folder_ / (name + ".mtl")).string());
@@ -146,6 +150,7 @@ class FolderLoader {
   Scene& scene_;
   const FolderRules& rules_;
   fs::path folder_;
+  const uint32_t threads_;  // of the host
   std::map<std::string, Source> sources_;
   std::set<std::string> wanted_;
   std::map<std::string, Model> bases_;
@@ -177,7 +182,7 @@ void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t 
 
 void load_folder(Scene& scene, const std::string& folder, const LoadOptions& options,
                  const FolderRules& rules) {
-  FolderLoader loader(scene, rules, folder);
+  FolderLoader loader(scene, rules, folder, options.threads);
   const uint64_t models = loader.run(options), absent = loader.absent();
   scene.form = absent == 0 ? "original" : "partial";
   scene.note = absent == 0 ? fmt::format("The scene is complete: it has the original's {} models.", models)

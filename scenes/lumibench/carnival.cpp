@@ -227,7 +227,7 @@ Scene build_carnival(const LoadOptions& options, const std::string& original) {
     generate(scene, options);
     return scene;
   }
-  scene.models.push_back(load_obj(original, scene.materials));
+  scene.models.push_back(load_obj(original, scene.materials, {.threads = options.threads}));
   place(scene.models.back(), {.translation = {400, 20, 150}, .scale = 0.2f});
   scene.form = "original";
   scene.note = "The mesh is from the assets folder.";

@@ -37,8 +37,8 @@ Model grow_up(const Model& young) {
   return model;
 }
 
-void load(Scene& scene, const std::string& path) {
-  Model tree = load_obj(path, scene.materials, &scene.textures);
+void load(Scene& scene, const std::string& path, uint32_t threads) {
+  Model tree = load_obj(path, scene.materials, {.textures = &scene.textures, .threads = threads});
   scene.form = "original";
   scene.note = "The mesh is from the assets folder.";
   if (std::filesystem::path(path).filename() == "AL05y.obj") {  // a stand-in of another size
@@ -90,7 +90,7 @@ Scene build_chestnut(const LoadOptions& options, const std::string& original) {
   scene.name = "CHSNT";
   scene.camera = {.eye = {20, 0, 100}, .target = {20, 100, 0}, .field_of_view = 50};
   scene.alpha_test = true;
-  original.empty() ? generate(scene, options) : load(scene, original);
+  original.empty() ? generate(scene, options) : load(scene, original, options.threads);
   return scene;
 }
 

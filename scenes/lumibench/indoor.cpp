@@ -40,7 +40,7 @@ Model load_bunny(Scene& scene, const std::string& path, uint32_t threads) {
         "(144,046).";
     return make_bunny_stand_in(add_material(scene, "bunny", lambertian(0.7f, 0.7f, 0.7f)), threads);
   }
-  Model model = load_obj(path, scene.materials);
+  Model model = load_obj(path, scene.materials, {.threads = threads});
   if (ends_with(path, kStanfordBunny)) {
     adjust(model, 10, {0, -0.33f, 0});  // to the original's units, with its feet on the floor
     scene.note = "The Stanford bunny (69,451 triangles) replaces the original's 144,046-triangle mesh.";
@@ -60,7 +60,7 @@ Model load_statue(Scene& scene, const std::string& path, uint32_t threads) {
         "count (448.9K).";
     return make_statue_stand_in(add_material(scene, "statue", lambertian(0.7f, 0.7f, 0.7f)), threads);
   }
-  Model model = load_obj(path, scene.materials);
+  Model model = load_obj(path, scene.materials, {.threads = threads});
   if (ends_with(path, kSmallLucy)) {
     constexpr float kScale = 0.37f;  // about 355 world units of height after the placement
     const Bounds box = bounds(model);

@@ -8,7 +8,7 @@
 
 namespace glint::scenes {
 
-Scene build_ship(const LoadOptions&, const std::string& original) {
+Scene build_ship(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "SHIP";
   scene.camera = {.eye = {378, 278, 500}, .target = {178, 278, 0}, .field_of_view = 50};
@@ -20,7 +20,7 @@ Scene build_ship(const LoadOptions&, const std::string& original) {
         "The scene is a procedural schooner with the original's bounds and number of materials, and about "
         "its triangle count (6,255).";
   } else {
-    ship = load_obj(original, scene.materials);
+    ship = load_obj(original, scene.materials, {.threads = options.threads});
     scene.form = "original";
     scene.note = "The scene is complete: the original mesh is from the assets folder.";
   }

@@ -100,9 +100,10 @@ void load_stand_in(Scene& scene, const std::filesystem::path& folder) {
       "the original's textures.";
 }
 
-void load(Scene& scene, const std::filesystem::path& path) {
+void load(Scene& scene, const std::filesystem::path& path, uint32_t threads) {
   if (path.filename() == "sponza.obj") {
-    scene.models.push_back(load_obj(path.string(), scene.materials, &scene.textures));
+    scene.models.push_back(
+        load_obj(path.string(), scene.materials, {.textures = &scene.textures, .threads = threads}));
     scene.form = "original";
     scene.note = "The mesh and the textures are from the assets folder.";
   } else {
@@ -279,7 +280,7 @@ Scene build_sponza(const LoadOptions& options, const std::string& original) {
   Scene scene;
   scene.name = "SPNZA";
   scene.camera = {.eye = {0, 115, 2}, .target = {0, 115, 1}, .field_of_view = 70, .focus_distance = 2};
-  original.empty() ? generate(scene, options) : load(scene, original);
+  original.empty() ? generate(scene, options) : load(scene, original, options.threads);
   return scene;
 }
 

@@ -2,25 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/files/file_list.h"
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "base/diagnostics.h"
 #include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
 
 namespace glint::report {
 namespace {
-namespace fs = std::filesystem;
 using Catch::Contains;
-
-struct ListedFolder {
-  fs::path path = fs::temp_directory_path() / ("glint-listed-" + std::to_string(::getpid()));
-  ListedFolder() { fs::create_directories(path); }
-  ~ListedFolder() { fs::remove_all(path); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
-};
+using test::TemporaryFolder;
 
 TEST_CASE("the sum of a text is its length and the CRC-32 of RFC 1952") {
   CHECK(sum_of("") == FileSum{0, 0});
@@ -39,7 +30,7 @@ TEST_CASE("a list of files survives its JSON, and anything else is refused") {
 }
 
 TEST_CASE("a file is read when it is as listed, and refused when its length or contents differ") {
-  const ListedFolder folder;
+  const TemporaryFolder folder;
   const ListedFiles files(folder.path.string(), "run.json", "run it again",
                           FileList{{"a.csv", sum_of("one\ntwo\n")}});
   CHECK(files.gone() == std::vector<std::string>{"a.csv"});
@@ -60,7 +51,7 @@ TEST_CASE("a file is read when it is as listed, and refused when its length or c
 }
 
 TEST_CASE("without a list, and beside it, every file counts as whole") {
-  const ListedFolder folder;
+  const TemporaryFolder folder;
   folder.write("a.csv", "one\n");
   const ListedFiles none(folder.path.string(), "run.json", "", std::nullopt),
       empty(folder.path.string(), "run.json", "", FileList{});

@@ -5,10 +5,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "base/config.h"
 #include "base/diagnostics.h"
@@ -16,20 +14,12 @@
 #include "report/files/run_directory.h"
 #include "report/files/run_facts.h"
 #include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
 
 namespace glint::report {
 namespace {
 namespace fs = std::filesystem;
-
-// Holds a folder that is removed when the test ends.
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("glint-test-" + std::to_string(::getpid()));
-  ~TemporaryFolder() { fs::remove_all(path); }
-  std::string read(const std::string& name) const {
-    std::ifstream in(path / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-};
+using test::TemporaryFolder;
 
 const std::vector<ParamInfo> kParams{{"core.warps", "warp", "Warps.", "32", "1 to 64"},
                                      {"core.units.fp32.latency", "cycle", "Latency.", "4", "1 to 1000"},

@@ -5,30 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <utility>
 
 #include "base/diagnostics.h"
 #include "scenes/generate/distance_field.h"
-#include "scenes/import/obj_loader.h"
 #include "scenes/mesh.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_data.h"
+#include "tests/support/temporary_folder.h"
 
+using glint::test::TemporaryFolder;
 using namespace glint::scenes;
 
 namespace {
-
-struct Folder {
-  std::filesystem::path path;
-  explicit Folder(const std::string& name) : path(std::filesystem::temp_directory_path() / name) {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path / "SHIP");
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
-};
 
 std::string message_of(const std::string& name, const LoadOptions& options) {
   try {
@@ -179,7 +169,7 @@ TEST_CASE("an unknown scene is a user error that names the nearest one") {
 }
 
 TEST_CASE("a missing asset is a user error that says which file belongs where") {
-  const Folder folder("glint_scene_test_empty");
+  const TemporaryFolder folder;
   const std::string message = message_of("SHIP", {folder.path.string()});
   CHECK(message.find("assets/models/karimSchooner.obj") != std::string::npos);
   CHECK(message.find("SHIP/karimSchooner.obj") != std::string::npos);
@@ -187,7 +177,7 @@ TEST_CASE("a missing asset is a user error that says which file belongs where") 
 }
 
 TEST_CASE("the data of an original is found as a file, or as a folder that holds OBJ files") {
-  const Folder folder("glint_scene_test_found");
+  const TemporaryFolder folder;
   const std::string assets = folder.path.string();
   std::filesystem::create_directories(folder.path / "FOX");
   folder.write("FOX/head.mtl", "newmtl m\n");
@@ -201,33 +191,6 @@ TEST_CASE("the data of an original is found as a file, or as a folder that holds
   CHECK(has_original("FOX", assets));
   CHECK(has_original("FOX", ""));
   CHECK(has_original("WKND", assets));
-}
-
-TEST_CASE("an OBJ file's polygons become fans of vertices shared by value in the order of first use") {
-  const Folder folder("glint_scene_test_obj");
-  folder.write("m.mtl", "newmtl a\nKd 0.1 0.2 0.3\nnewmtl b\n");
-  folder.write("SHIP/karimSchooner.obj",
-               "mtllib ../m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nvt 0.25 0.75\n"
-               "usemtl b\nf 1/1 2/1 3/1 4/1\nusemtl a\nf 1/1 5/1 3/1\nf 1/1 2/1 3/1\n");
-  std::vector<Material> materials(2);
-  const Model model = load_obj((folder.path / "SHIP/karimSchooner.obj").string(), materials);
-  REQUIRE(materials.size() == 4);
-  CHECK(materials[2].diffuse == Vec4{0.1f, 0.2f, 0.3f, 1});
-  CHECK(materials[3].diffuse == Vec4{0, 0, 0, 1});  // Kd is missing
-  CHECK(model.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 5, 6});
-  CHECK(model.vertices[0].material == 3);
-  CHECK(model.vertices[4].material == 2);
-  CHECK(model.vertices[0].texture_coordinate == Vec2{0.25f, 0.25f});  // v is turned over
-  CHECK(model.vertices[0].normal == Vec3{0, 0, 1});                   // the file has none, so they are smooth
-}
-
-TEST_CASE("an OBJ file without a material library gets one grey") {
-  const Folder folder("glint_scene_test_grey");
-  folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  std::vector<Material> materials;
-  load_obj((folder.path / "t.obj").string(), materials);
-  REQUIRE(materials.size() == 1);
-  CHECK(materials[0].diffuse == Vec4{0.7f, 0.7f, 0.7f, 1});
 }
 
 TEST_CASE("the original ship loads with 6,255 triangles and 11 materials from the unpacked archive") {
