@@ -3,9 +3,12 @@
 #include "base/regular_file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+
+#include "base/parallel_ranges.h"
 
 namespace glint {
 namespace {
@@ -38,6 +41,26 @@ std::optional<std::string> read_regular_file(const std::string& path) {
 }
 std::optional<std::vector<unsigned char>> read_regular_bytes(const std::string& path) {
   return read_whole<std::vector<unsigned char>>(path);
+}
+
+uint64_t size_of_regular_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return 0;
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+bool read_regular_file(const std::string& path, std::span<char> out, uint32_t threads) {
+  constexpr size_t kPart = 16 << 20;  // bytes that a thread reads at a time
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || !std::ifstream(path)) return false;
+  std::atomic<bool> is_whole = true;
+  parallel_ranges(out.size(), kPart, threads, [&](size_t begin, size_t end) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(std::streamoff(begin));
+    if (!in.read(out.data() + begin, std::streamsize(end - begin))) is_whole = false;
+  });
+  return is_whole;
 }
 
 }  // namespace glint

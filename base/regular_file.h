@@ -1,7 +1,9 @@
 // Reads regular files whole.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,5 +13,12 @@ namespace glint {
 // the reader of a pipe waits for a writer, and a device may have no end.
 std::optional<std::string> read_regular_file(const std::string& path);
 std::optional<std::vector<unsigned char>> read_regular_bytes(const std::string& path);
+
+// Returns the bytes of a regular file, or 0 when it is none.
+uint64_t size_of_regular_file(const std::string& path);
+
+// Fills `out` with the first bytes of a regular file, on up to `threads` threads of the host. Returns false
+// when the file cannot be read or has fewer bytes.
+bool read_regular_file(const std::string& path, std::span<char> out, uint32_t threads);
 
 }  // namespace glint

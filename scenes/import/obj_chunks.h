@@ -24,6 +24,7 @@ struct ObjChunk {
   std::string_view text;
   ObjCounts above{}, count{};  // elements above the chunk, and in it
   uint64_t lines = 0;
+  uint64_t faces = 0;  // those with a corner
   std::vector<ObjMaterialLine> material_lines;
 };
 

@@ -8,9 +8,11 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <sstream>
+#include <string_view>
 #include <tiny_obj_loader.h>
 #include <utility>
 
@@ -27,12 +29,6 @@ namespace glint::scenes {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string contents(const std::string& path) {
-  std::optional<std::string> text = read_regular_file(path);
-  if (!text) throw UserError({path}, "this file cannot be read", "expected a Wavefront OBJ file");
-  return std::move(*text);
-}
 
 // Reads the materials of a text whose lines about materials are given. Returns the library's materials and,
 // in `material_of`, the number of the material that holds before the first line and after each one. The
@@ -68,13 +64,25 @@ std::vector<tinyobj::material_t> read_materials(std::span<const ObjChunk> chunks
   return materials;
 }
 
-// Returns the whole text of a file, or of the parts that it was cut into.
-std::string text_of(const std::string& path, const std::vector<std::string>& parts) {
-  if (parts.empty()) return contents(path);
-  std::string text;
-  for (const std::string& part : parts) text += contents(part);
-  return text;
-}
+// Holds the text of a file, or of the parts that it was cut into.
+class Text {
+ public:
+  Text(const std::string& path, const std::vector<std::string>& parts, uint32_t threads) {
+    const std::vector<std::string> files = parts.empty() ? std::vector{path} : parts;
+    std::vector<uint64_t> sizes;
+    for (const std::string& file : files) size_ += sizes.emplace_back(size_of_regular_file(file));
+    bytes_ = std::make_unique_for_overwrite<char[]>(size_);
+    char* at = bytes_.get();
+    for (size_t i = 0; i < files.size(); at += sizes[i++])
+      if (!read_regular_file(files[i], {at, sizes[i]}, threads))
+        throw UserError({files[i]}, "this file cannot be read", "expected a Wavefront OBJ file");
+  }
+  std::string_view view() const { return {bytes_.get(), size_}; }
+
+ private:
+  size_t size_ = 0;
+  std::unique_ptr<char[]> bytes_;  // not filled at first, because one thread would then touch all pages
+};
 
 Material material_of(const tinyobj::material_t& m) {
   return lambertian(float(m.diffuse[0]), float(m.diffuse[1]), float(m.diffuse[2]));
@@ -122,8 +130,9 @@ std::vector<Material> load_materials(const std::string& path) {
 
 Model load_obj(const std::string& path, std::vector<Material>& materials, const ObjReading& reading) {
   const std::vector<std::string> parts = parts_of(path);
-  std::string text = text_of(path, parts);
-  const std::vector<ObjChunk> chunks = checked_chunks(text, path, reading.threads, reading.chunk_bytes);
+  std::optional<Text> text(std::in_place, path, parts, reading.threads);
+  const std::vector<ObjChunk> chunks =
+      checked_chunks(text->view(), path, reading.threads, reading.chunk_bytes);
 
   std::vector<int32_t> material_of_line;
   const std::vector<tinyobj::material_t> read = read_materials(chunks, path, parts, material_of_line);
@@ -137,7 +146,7 @@ Model load_obj(const std::string& path, std::vector<Material>& materials, const 
   if (read.empty()) materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
 
   ObjMesh mesh = read_obj(chunks, material_of_line, path, reading.threads);
-  text = {};
+  text.reset();
   const bool has_normals = !mesh.normals.empty();
   Model model = model_of(std::move(mesh), reading.threads);
   model.name = fs::path(path).stem().string();
