@@ -25,13 +25,23 @@ bool for_each_instruction(Words& words, const Visit& visit) {
   return true;
 }
 
+// Returns the first word of a literal. Numbers of less than 32 bits fill the word: signed integers are
+// extended by their sign, and other numbers by zeros (SPIR-V specification, 2.2.1).
+uint32_t literal_word(uint64_t bits, const std::string& number) {
+  const uint32_t unused = number == "s8" || number == "u8"                        ? 24
+                          : number == "s16" || number == "u16" || number == "f16" ? 16
+                                                                                  : 0;
+  const uint32_t at_top = uint32_t(bits) << unused;
+  return number[0] == 's' ? uint32_t(int32_t(at_top) >> unused) : at_top >> unused;
+}
+
 struct Found {
   std::map<uint32_t, uint32_t> spec_id;  // by result id
   std::map<uint32_t, std::string> name, number;
   std::vector<SpecConstant> constants;
 };
 
-void visit_declaration(Found& found, spv::Op op, std::span<const uint32_t> w) {
+void visit_name(Found& found, spv::Op op, std::span<const uint32_t> w) {
   using enum spv::Op;
   if (op == OpName && w.size() > 2) found.name[w[1]] = text_at(w.subspan(2));
   if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId)
@@ -39,6 +49,11 @@ void visit_declaration(Found& found, spv::Op op, std::span<const uint32_t> w) {
   if (op == OpTypeBool && w.size() > 1) found.number[w[1]] = "bool";
   if (op == OpTypeInt && w.size() > 3) found.number[w[1]] = fmt::format("{}{}", w[3] ? 's' : 'u', w[2]);
   if (op == OpTypeFloat && w.size() > 2) found.number[w[1]] = fmt::format("f{}", w[2]);
+}
+
+void visit_declaration(Found& found, spv::Op op, std::span<const uint32_t> w) {
+  using enum spv::Op;
+  visit_name(found, op, w);
   const bool is_bool = op == OpSpecConstantTrue || op == OpSpecConstantFalse;
   if ((!is_bool && op != OpSpecConstant) || w.size() < 3) return;
   const auto id = found.spec_id.find(w[2]);
@@ -61,19 +76,18 @@ std::vector<SpecConstant> spec_constants(const std::vector<uint32_t>& words, con
 }
 
 std::vector<uint32_t> specialize(std::vector<uint32_t> words, const std::map<uint32_t, uint64_t>& values) {
-  std::map<uint32_t, uint32_t> spec_id;
+  Found found;
   for_each_instruction(words, [&](spv::Op op, std::span<uint32_t> w) {
     using enum spv::Op;
-    if (op == OpDecorate && w.size() > 3 && spv::Decoration(w[2]) == spv::Decoration::SpecId)
-      spec_id[w[1]] = w[3];
+    visit_name(found, op, w);
     const bool is_bool = op == OpSpecConstantTrue || op == OpSpecConstantFalse;
     if ((!is_bool && op != OpSpecConstant) || w.size() < 3) return;
-    const auto id = spec_id.find(w[2]);
-    const auto value = id == spec_id.end() ? values.end() : values.find(id->second);
+    const auto id = found.spec_id.find(w[2]);
+    const auto value = id == found.spec_id.end() ? values.end() : values.find(id->second);
     if (value == values.end()) return;
     if (is_bool)
       w[0] = (w[0] & 0xffff'0000u) | uint32_t(value->second ? OpSpecConstantTrue : OpSpecConstantFalse);
-    if (!is_bool && w.size() > 3) w[3] = uint32_t(value->second);
+    if (!is_bool && w.size() > 3) w[3] = literal_word(value->second, found.number[w[1]]);
     if (!is_bool && w.size() > 4) w[4] = uint32_t(value->second >> 32);
   });
   return words;

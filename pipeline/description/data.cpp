@@ -16,15 +16,6 @@ namespace {
 
 using frontend::BlockType;
 
-std::string canonical(const std::string& type) {
-  if (type == "float") return "f32";
-  if (type == "double") return "f64";
-  if (type == "uint") return "u32";
-  if (type == "int") return "s32";
-  if (type[0] == 'i') return "s" + type.substr(1);
-  return type;
-}
-
 void flatten(const Value& value, std::vector<const Value*>& out) {
   if (value.kind == Value::Kind::List)
     for (const Value& each : value.list) flatten(each, out);
@@ -166,7 +157,7 @@ std::vector<std::byte> inline_bytes(const DataSource& source, const BlockType* b
 }
 
 void fill(const DataSource& source, std::vector<std::byte>& out) {
-  const size_t each = bytes_of_number(source.type);
+  const size_t each = bytes_of_number(source.type), bits = 8 * each;
   const bool real = canonical(source.type)[0] == 'f';
   RandomNumbers random(source.seed);
   Value value;
@@ -174,7 +165,7 @@ void fill(const DataSource& source, std::vector<std::byte>& out) {
   const AddressOf none = [](const std::string&) { return uint64_t{0}; };
   for (size_t i = 0; i < out.size() / each; ++i) {
     if (source.init == "iota") {
-      value.real = double(i), value.whole = int64_t(i);
+      value.real = double(i), value.whole = int64_t(bits >= 64 ? i : i & ((uint64_t{1} << bits) - 1));
     } else if (source.init == "value") {
       value.real = source.value, value.whole = int64_t(source.value);
     } else if (real) {
@@ -202,6 +193,20 @@ std::vector<std::byte> file_bytes(const DataSource& source, Diagnostics& errors)
 
 }  // namespace
 
+std::string canonical(const std::string& type) {
+  if (type == "float") return "f32";
+  if (type == "double") return "f64";
+  if (type == "uint") return "u32";
+  if (type == "int") return "s32";
+  if (type[0] == 'i') return "s" + type.substr(1);
+  return type;
+}
+
+bool fits(int64_t whole, const std::string& type) {
+  const uint32_t bits = 8 * bytes_of_number(type);
+  return bits == 64 || (whole >= -(int64_t{1} << (bits - 1)) && whole < int64_t{1} << bits);
+}
+
 const std::vector<std::string>& number_types() {
   static const std::vector<std::string> kTypes{"u8",  "s8",  "u16",  "s16",   "u32",   "s32", "u64",
                                                "s64", "f16", "f32",  "f64",   "i8",    "i16", "i32",
@@ -227,6 +232,7 @@ bool put_number(const std::string& name, const Value& value, const AddressOf& ad
   if (type == "f16") return store(exec::to_half(float(real)), at), true;
   if (value.kind == Value::Kind::Real) return false;
   const int64_t whole = value.kind == Value::Kind::Bool ? int64_t(value.flag) : value.whole;
+  if (!fits(whole, type)) return false;
   std::memcpy(at, &whole, bytes_of_number(type));  // On a little-endian machine this takes the low bits.
   return true;
 }

@@ -15,12 +15,16 @@ namespace glint::pipeline {
 // Returns the types "u8" to "f64", and GLSL's "float", "int", "uint", "double".
 const std::vector<std::string>& number_types();
 uint32_t bytes_of_number(const std::string& type);
+// Returns the name without aliases: "float" is "f32", and "i8" is "s8".
+std::string canonical(const std::string& type);
+// Says whether an integer type has the bits for a number, with or without a sign: u8 also takes -1, for 255.
+bool fits(int64_t whole, const std::string& type);
 
 // Returns the address of a buffer by name, or 0 when it is unknown. Data use it for pointers: 64-bit numbers
 // that are written as a buffer's name.
 using AddressOf = std::function<uint64_t(const std::string& buffer)>;
 
-// Puts a number at `at`. Returns false when the value is not of that type.
+// Puts a number at `at`. Returns false when the value is not of that type, or needs more bits than that has.
 bool put_number(const std::string& type, const Value& value, const AddressOf& address, std::byte* at);
 
 // Returns the bytes of a source. `block` is the layout by which members are named, or null when there is

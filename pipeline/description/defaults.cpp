@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <set>
 #include <utility>
 
+#include "exec/texture_format.h"
 #include "pipeline/description/modules.h"
 #include "pipeline/description/usual_values.h"
 
@@ -46,6 +48,16 @@ uint32_t default_bytes(const BlockType& block) {
       bytes = last.offset + kElements * std::max(1u, last.type.stride);
   }
   return (bytes + 15) / 16 * 16;
+}
+
+// Returns the default of a constant as the value of a key.
+std::string text_of(const frontend::SpecConstant& c) {
+  if (c.number == "bool") return c.value ? "true" : "false";
+  if (c.number == "f16") return fmt::format("{}", exec::from_half(uint16_t(c.value)));
+  if (c.number == "f32") return fmt::format("{}", std::bit_cast<float>(uint32_t(c.value)));
+  if (c.number == "f64") return fmt::format("{}", std::bit_cast<double>(c.value));
+  if (c.number[0] == 's' && c.number != "s64") return fmt::format("{}", int32_t(c.value));
+  return fmt::format("{}", int64_t(c.value));
 }
 
 const char* kScene = R"(
@@ -210,17 +222,13 @@ class Writer {
   }
 
   void write_specialization() {
-    bool first = true;
+    std::set<std::string> written;
     for (const ShaderModule& m : modules_.all())
       for (const frontend::SpecConstant& c : m.constants) {
-        if (first) line("\n# Specialisation constants and their defaults.\n[specialization]");
-        first = false;
-        std::string value =
-            fmt::format("{}", int64_t(c.number[0] == 's' ? int64_t(int32_t(c.value)) : int64_t(c.value)));
-        if (c.number == "bool") value = c.value ? "true" : "false";
-        if (c.number == "f32") value = fmt::format("{}", std::bit_cast<float>(uint32_t(c.value)));
-        line("# {} = {}  # constant_id {}, {}", c.name.empty() ? fmt::format("{}", c.id) : c.name, value,
-             c.id, c.number);
+        const std::string name = c.name.empty() ? fmt::format("{}", c.id) : c.name;
+        if (written.empty()) line("\n# Specialisation constants and their defaults.\n[specialization]");
+        if (!written.insert(name).second) continue;
+        line("# {} = {}  # constant_id {}, {}", name, text_of(c), c.id, c.number);
       }
   }
 

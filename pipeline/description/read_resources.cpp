@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "isa/descriptors.h"
@@ -117,6 +118,24 @@ SamplerDescription read_sampler(Reading& r, const Value& value) {
   return out;
 }
 
+// Reads what generators fill a buffer with. The numbers have to be those of its type.
+void read_range(Reading& r, TableReader& t, DataSource& out) {
+  const bool real = canonical(out.type)[0] == 'f';
+  out.value = t.number("value", 0);
+  out.low = t.number("low", 0);
+  out.high = t.number("high", real ? 1 : 255);
+  const auto check = [&](const char* key, double number) {
+    const bool whole = number >= -0x1p63 && number < 0x1p63 && number == std::floor(number);
+    if (!real && !(whole && fits(int64_t(number), out.type)))
+      r.errors.error(t.where(), fmt::format("'{}' is {}, which is not a {}", key, number, out.type));
+  };
+  if (out.init == "value") check("value", out.value);
+  if (out.init != "random") return;
+  check("low", out.low), check("high", out.high);
+  if (!(out.low <= out.high))
+    r.errors.error(t.where(), fmt::format("'low' is {}, which is above 'high', {}", out.low, out.high));
+}
+
 }  // namespace
 
 Slot read_slot(TableReader& t) {
@@ -135,7 +154,6 @@ DataSource read_data(Reading& r, TableReader& t, bool is_buffer) {
   if (const Value* data = t.take("data")) out.data = *data;
   out.type = t.name("type", "u32", number_types());
   if (!is_buffer) return out;
-  const bool real = out.type[0] == 'f';
   out.file = r.beside(t.text("file"));
   out.attribute = t.name("attribute", "", {"", "positions", "normals", "coordinates", "indices"});
   const std::string fallback = !out.attribute.empty() ? "mesh"
@@ -143,9 +161,7 @@ DataSource read_data(Reading& r, TableReader& t, bool is_buffer) {
                                : t.take("value")      ? "value"
                                                       : "zero";
   out.init = t.name("init", fallback, {"zero", "value", "iota", "random", "file", "mesh"});
-  out.value = t.number("value", 0);
-  out.low = t.number("low", 0);
-  out.high = t.number("high", real ? 1 : 255);
+  read_range(r, t, out);
   out.seed = uint64_t(t.integer("seed", 1, 0, INT64_MAX));
   if (const auto bytes = t.optional_integer("bytes", 1, kMostBytes)) out.bytes = uint64_t(*bytes);
   const int64_t element = int64_t(bytes_of_number(out.type));

@@ -11,4 +11,6 @@ if(TARGET glint)
   endforeach()
   add_test(NAME pipeline_Texels
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/texel_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
+  add_test(NAME pipeline_Numbers
+    COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/cli/numbers_test.py $<TARGET_FILE:glint> ${PROJECT_SOURCE_DIR})
 endif()
