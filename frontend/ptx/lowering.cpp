@@ -11,6 +11,7 @@
 #include "frontend/ptx/fields.h"
 #include "frontend/ptx/machine.h"
 #include "frontend/ptx/unroll.h"
+#include "frontend/ptx/unsupported.h"
 
 namespace glint::frontend::ptx {
 
@@ -37,8 +38,9 @@ KernelLowering::KernelLowering(const Module& module, const Function& entry, cons
 
 VirtualProgram KernelLowering::run() {
   if (const auto& c = entry_.required_cluster; c && uint64_t{(*c)[0]} * (*c)[1] * (*c)[2] != 1)
-    no_support(entry_.position, fmt::format("a cluster of {} x {} x {} blocks (.reqnctapercluster)", (*c)[0],
-                                            (*c)[1], (*c)[2]));
+    no_support(entry_.position,
+               fmt::format("not supported: a cluster of {} x {} x {} blocks (.reqnctapercluster)", (*c)[0],
+                           (*c)[1], (*c)[2]));
   scopes_.push_back({{}, {}, true});
   place_parameters();
   place_variables();
@@ -300,7 +302,8 @@ void KernelLowering::declare(const Declaration& d) {
   symbol.type = d.type;
   symbol.space = d.space;
   if (d.space == VariableSpace::Register) {
-    if (d.type.bits > 64) return no_support(d.position, fmt::format("registers of {} bits", d.type.bits));
+    if (d.type.bits > 64)
+      return no_support(d.position, fmt::format("not supported: registers of {} bits", d.type.bits));
     if (d.range) {
       scopes_.back().ranges.push_back(&d);
       return;
@@ -318,14 +321,17 @@ void KernelLowering::declare(const Declaration& d) {
     if (d.space == VariableSpace::Local) {
       symbol.address = aligned(program_.local_bytes, d.alignment());
       if (symbol.address + d.bytes() > kMostLocalBytes)
-        return no_support(d.position, fmt::format("'{}': more than {} bytes of local memory of one thread",
-                                                  d.name, kMostLocalBytes));
+        return no_support(d.position,
+                          fmt::format("not supported: '{}': more than {} bytes of local memory of one thread",
+                                      d.name, kMostLocalBytes));
       program_.local_bytes = uint32_t(aligned(symbol.address + d.bytes(), 4));
     } else if (d.space == VariableSpace::Shared && !d.is_extern) {
       symbol.address = shared_.at(&d);
     } else {
-      return no_support(d.position,
-                        fmt::format("'{}': global, constant and extern variables inside a function", d.name));
+      return no_support(
+          d.position,
+          fmt::format("not supported: '{}': global, constant and extern variables inside a function",
+                      d.name));
     }
   }
   scopes_.back().names[d.name] = symbol;
@@ -363,6 +369,9 @@ void KernelLowering::lower(const Instruction& inst) {
   guard_ = kNoRegister;
   guard_negate_ = inst.guard_negated;
   if (!inst.guard.empty()) guard_ = predicate_register(inst.guard, inst.position);
+  if (const std::string part = unsupported_part(inst.words); !part.empty())
+    return no_support(inst.position,
+                      fmt::format("not supported: '{}', which belongs to {}", joined(inst.words), part));
   if (lower_control(inst) || lower_special(inst)) return;
   lower_generic(inst);
 }

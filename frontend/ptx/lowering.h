@@ -83,8 +83,8 @@ class KernelLowering {
   void error(TextPosition position, const std::string& what, const std::string& note = {}) {
     errors_.error(where(position), what, note);
   }
-  void no_support(TextPosition position, const std::string& what) {
-    unsupported_.error(where(position), what);
+  void no_support(TextPosition position, const std::string& what, const std::string& note = {}) {
+    unsupported_.error(where(position), what, note);
   }
 
   // These functions are in lowering_operands.cpp.

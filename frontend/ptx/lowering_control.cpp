@@ -90,14 +90,16 @@ void KernelLowering::lower_call(const Instruction& inst) {
   const auto f = functions_.find(name.name);
   if (f == functions_.end()) {
     if (find(name.name))
-      return no_support(name.position, "calls through a register: calls must name their function");
+      return no_support(name.position,
+                        "not supported: calls through a register: calls must name their function");
     return error(name.position, fmt::format("there is no function '{}'", name.name));
   }
   const Function& callee = *f->second;
   if (!callee.has_body)
     return no_support(
         name.position,
-        fmt::format("function '{}' has no body in this module, and Glint does not link modules", name.name));
+        fmt::format("function '{}' has no body in this module, and Glint does not link modules", name.name),
+        name.name == "vprintf" ? "kernels cannot print here; leave printf and assert out" : "");
   if (std::any_of(calls_.begin(), calls_.end(), [&](const auto& open) { return open.first == &callee; }))
     return no_support(
         name.position,

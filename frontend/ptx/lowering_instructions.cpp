@@ -199,7 +199,8 @@ void KernelLowering::join_parts(const Instruction& inst, const Operand& to,
     emit(isa::op_index("prmt.b32"),
          {destination(to, OperandKind::Dst32, types[0]), low, high, VirtualOperand::value(kLowHalves)});
   } else {
-    no_support(inst.position, fmt::format("'{}' of {} parts", joined(inst.words), parts.size()));
+    no_support(inst.position,
+               fmt::format("not supported: '{}' of {} parts", joined(inst.words), parts.size()));
   }
   finish_moves();
 }
@@ -232,7 +233,8 @@ void KernelLowering::split_parts(const Instruction& inst, const std::vector<Oper
     // The value is copied first, because one of the parts may be written where the whole is read.
     split(compute32("mov.b32", {source(from, OperandKind::Src32, types[0])}), 0);
   } else {
-    no_support(inst.position, fmt::format("'{}' into {} parts", joined(inst.words), parts.size()));
+    no_support(inst.position,
+               fmt::format("not supported: '{}' into {} parts", joined(inst.words), parts.size()));
   }
   finish_moves();
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "frontend/ptx/lowering.h"
+#include "frontend/ptx/unsupported.h"
 #include "isa/text.h"
 
 namespace glint::frontend::ptx {
@@ -105,7 +106,7 @@ VirtualOperand KernelLowering::predicate_source(const Operand& o) {
 VirtualOperand KernelLowering::literal(const Operand& o, bool wide, const Type& type) {
   if (o.kind == Operand::Kind::Integer) return VirtualOperand::value(wide ? o.value : uint32_t(o.value));
   if (type.bits == 16 && o.kind == Operand::Kind::Float64)
-    no_support(o.position, "decimal constants of 16-bit floats: write their bits");
+    no_support(o.position, "not supported: decimal constants of 16-bit floats: write their bits");
   if (o.kind == Operand::Kind::Float32)
     return VirtualOperand::value(
         wide ? std::bit_cast<uint64_t>(double(std::bit_cast<float>(uint32_t(o.value)))) : o.value);
@@ -147,6 +148,13 @@ VirtualOperand KernelLowering::address_of(const Symbol& symbol, int64_t offset, 
 
 VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
   const Symbol* symbol = find(o.name);
+  if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() &&
+      is_part_selector(o.element)) {
+    no_support(o.position,
+               fmt::format("not supported: '{}.{}', a byte or half of a register in a video instruction",
+                           o.name, o.element));
+    return VirtualOperand::value(0);
+  }
   // `%tid.x` is not a part of a scalar register named %tid.
   if (symbol && symbol->kind == Symbol::Kind::Register && symbol->elements.empty() && !o.element.empty())
     symbol = nullptr;
@@ -155,8 +163,9 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
     const VirtualOperand special = special_source(o, wide, found);
     if (found) return special;
     if (functions_.contains(o.name)) {
-      no_support(o.position,
-                 fmt::format("the address of function '{}': calls must name their function", o.name));
+      no_support(
+          o.position,
+          fmt::format("not supported: the address of function '{}': calls must name their function", o.name));
     } else {
       error(o.position,
             fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));

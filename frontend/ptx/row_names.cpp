@@ -131,6 +131,10 @@ std::optional<MemoryForm> memory_form(const Words& words) {
                                                            "const",  "param",  "generic"};
   static constexpr std::array<std::string_view, 14> kFunctions{
       "add", "min", "max", "inc", "dec", "and", "or", "xor", "exch", "cas", "noftz", "ftz", "rn", "sat"};
+  // These words say how caches and other threads take part, which changes nothing here.
+  static constexpr std::array<std::string_view, 17> kHints{
+      "weak", "relaxed", "volatile", "mmio", "cta", "cluster", "gpu", "sys",    "nc",
+      "ca",   "cg",      "cs",       "lu",   "cv",  "wb",      "wt",  "unified"};
   for (size_t i = 1; i < words.size(); ++i) {
     const std::string head = words[i].substr(0, words[i].find("::"));
     if (is_one_of(head, kSpaces)) {
@@ -142,10 +146,12 @@ std::optional<MemoryForm> memory_form(const Words& words) {
     } else if (const auto type = type_of(words[i])) {
       form.type = *type;
       form.type_name = words[i];
-    } else {
-      const bool both = words[i] == "acq_rel" || words[i] == "sc";
-      form.acquires |= both || words[i] == "acquire";
-      form.releases |= both || words[i] == "release";
+    } else if (words[i] == "acq_rel" || words[i] == "sc") {
+      form.acquires = form.releases = true;
+    } else if (words[i] == "acquire" || words[i] == "release") {
+      (words[i] == "acquire" ? form.acquires : form.releases) = true;
+    } else if (!is_one_of(words[i], kHints) && head != "L1" && head != "L2" && head != "level") {
+      return {};
     }
   }
   return form.type_name.empty() ? std::nullopt : std::optional(form);

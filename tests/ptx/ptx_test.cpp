@@ -309,6 +309,24 @@ TEST_CASE("mistakes are told with file, line and column, all at once") {
   CHECK(message_of(kHead).find("the module has no kernel") != std::string::npos);
 }
 
+TEST_CASE(
+    "parts of PTX that Glint does not have are named as such, and no word of an access is passed over") {
+  const auto says = [](const char* line, const char* message) {
+    CAPTURE(line);
+    CHECK(message_of(storing(line)).find(message) != std::string::npos);
+  };
+  says("tex.2d.v4.f32.f32 {%f1,%f2,%f3,%f4}, [%d1,{%f1,%f2}];", "which belongs to textures and surfaces");
+  says("mma.sync.aligned.m16n8k16.row.col.f32.f16.f16.f32 %r1,%r2,%r3,%r1;",
+       "belongs to ops of tensor cores");
+  says("cp.async.commit_group;", "'cp.async.commit_group', which belongs to asynchronous copies");
+  says("st.async.shared::cluster.u32 [%r1], %r2, [%r3];", "belongs to asynchronous copies");
+  says("barrier.cluster.arrive;", "belongs to clusters of more than one block");
+  says("vadd.s32.u32.s32 %r2, %r1.b1, %r1;", "test.ptx:8:23: error: not supported: '%r1.b1', a byte or half");
+  says("ld.global.volatil.u32 %r1, [%d1];", "no op 'ld.global.volatil.u32'");
+  CHECK(message_of(storing("call vprintf;", ".extern .func vprintf();\n"))
+            .find("leave printf and assert out") != std::string::npos);
+}
+
 namespace {
 
 // Uses xorshift64*, which gives the same graphs on every machine.

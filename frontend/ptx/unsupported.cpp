@@ -1,0 +1,40 @@
+// Sorts opcodes into the parts of PTX that Glint does not have.
+// SPDX-License-Identifier: Apache-2.0
+#include "frontend/ptx/unsupported.h"
+
+#include <algorithm>
+#include <map>
+
+namespace glint::frontend::ptx {
+namespace {
+
+constexpr const char* kTextures = "textures and surfaces, because a launch file cannot bind them";
+constexpr const char* kTensors = "ops of tensor cores";
+constexpr const char* kAsync = "asynchronous copies and their barriers";
+constexpr const char* kClusters = "clusters of more than one block";
+
+const std::map<std::string, const char*, std::less<>>& part_by_op() {
+  static const std::map<std::string, const char*, std::less<>> kParts{
+      {"tex", kTextures},     {"tld4", kTextures},    {"txq", kTextures},       {"suld", kTextures},
+      {"sust", kTextures},    {"sured", kTextures},   {"suq", kTextures},       {"istypep", kTextures},
+      {"mma", kTensors},      {"wmma", kTensors},     {"wgmma", kTensors},      {"tcgen05", kTensors},
+      {"ldmatrix", kTensors}, {"stmatrix", kTensors}, {"movmatrix", kTensors},  {"cp", kAsync},
+      {"mbarrier", kAsync},   {"mapa", kClusters},    {"getctarank", kClusters}};
+  return kParts;
+}
+
+}  // namespace
+
+std::string unsupported_part(const Words& words) {
+  if (const auto part = part_by_op().find(words[0]); part != part_by_op().end()) return part->second;
+  if ((words[0] == "st" || words[0] == "red") && has_word(words, "async")) return kAsync;
+  if (words[0] == "barrier" && has_word(words, "cluster")) return kClusters;
+  return {};
+}
+
+bool is_part_selector(const std::string& element) {
+  return element == "h0" || element == "h1" ||
+         (element.size() == 2 && element[0] == 'b' && element[1] >= '0' && element[1] <= '3');
+}
+
+}  // namespace glint::frontend::ptx
