@@ -4,6 +4,7 @@
 """The new file is a copy of an existing policy of the same kind under the new name, so it builds and keeps the contract
 before its first change. With --plugin it becomes a project of its own that needs only an installed Glint."""
 import argparse
+import functools
 import pathlib
 import re
 import sys
@@ -20,20 +21,43 @@ def fail(message: str, note: str = "") -> None:
 def registrations() -> dict[str, dict[str, pathlib.Path]]:
     """Returns a map from interfaces to names of policies to their files."""
     found: dict[str, dict[str, pathlib.Path]] = {}
-    for path in sorted(ROOT.glob("*/*/*.cpp")):
+    for path in sorted(path for depth in ("*/*/*.cpp", "*/*/*/*.cpp") for path in ROOT.glob(depth)):
+        if path.relative_to(ROOT).parts[0] in ("tests", "build"):
+            continue
         text = path.read_text()
         interface = re.search(r"const Register<(\w+), \w+> ", text)
         name = re.search(r'kName = "(\w+)"', text)
-        if interface and name and path.parts[-3] not in ("tests", "build"):
+        if interface and name:
             found.setdefault(interface[1], {})[name[1]] = path
     return found
 
 
+@functools.cache
+def keys() -> dict[str, str]:
+    """Returns a map from interfaces to their keys."""
+    found = {}
+    for path in (path for depth in ("*/*.h", "*/*/*.h") for path in ROOT.glob(depth)):
+        if key := re.search(r'class (\w+) \{(?:(?!\nclass ).)*?kKind\{"([^"]+)"', path.read_text(), re.S):
+            found[key[1]] = key[2]
+    return found
+
+
 def key_of(interface: str) -> str:
-    for path in ROOT.glob("*/**/*.h"):
-        if found := re.search(rf'class {interface} .*?kKind{{"([^"]+)"', path.read_text(), re.S):
-            return found[1]
-    return ""
+    return keys().get(interface, "")
+
+
+def names_kind(words: str, interface: str) -> bool:
+    """Says whether the words are an interface or its key. The star of `*.replacement` stands for one cache or another."""
+    key = key_of(interface)
+    return words in (interface, key) or (key.startswith("*.") and words.endswith(key[1:]))
+
+
+def choice_of(interface: str, words: str, name: str) -> str:
+    """Returns what chooses a policy on the command line."""
+    key = key_of(interface)
+    if key.startswith("*."):
+        key = words if words.endswith(key[1:]) and words != key else f"memory.l1{key[1:]}"
+    return f"--set {key}={name}" if not key.startswith("(") else f"{key.strip('()')} {name}" if key.startswith("(--") else ""
 
 
 def class_name(name: str) -> str:
@@ -46,7 +70,7 @@ def begin(source: pathlib.Path, old: str, new: str) -> str:
     old_class = re.search(r"const Register<\w+, (\w+)> ", text)[1]
     first, rest = text.split("\n// SPDX", 1)
     what = re.sub(r"\(.*|:.*", "", first.split("\n")[0]).replace(f"`{old}`", f"`{new}`") if f"`{old}`" in first.split("\n")[0] else f"// Implements the policy `{new}`"
-    rest = re.sub(rf"\b{old_class}\b", class_name(new), rest).replace(f'kName = "{old}"', f'kName = "{new}"')
+    rest = re.sub(rf"\b{old_class}\b", class_name(new), rest).replace(f'"{old}"', f'"{new}"')  # the name, and that of its statistics
     rest = re.sub(r'(kDoc\s*=\s*)(?:"(?:[^"\\]|\\.)*"\s*)+;', rf'\1"A copy of {old}, to be changed.";', rest)
     return f"{what}: a copy of `{old}`, to be changed.\n// SPDX{rest}"
 
@@ -59,7 +83,7 @@ def main() -> None:
     parser.add_argument("--like", metavar="POLICY", help="existing policy to copy (default: the shortest of its kind)")
     parser.add_argument("--plugin", metavar="FOLDER", type=pathlib.Path, help="write a project that builds a plugin into this new folder, and change nothing here")
     options = parser.parse_args()
-    interface = next((one for one in known if options.interface in (one, key_of(one))), None)
+    interface = next((one for one in known if names_kind(options.interface, one)), None)
     if interface is None:
         fail(f"no kind of policy '{options.interface}'", f"there are {', '.join(f'{one} ({key_of(one)})' for one in sorted(known))}")
     if not re.fullmatch(r"[a-z][a-z0-9_]*", options.name):
@@ -78,11 +102,13 @@ def main() -> None:
         (options.plugin / f"{options.name}.cpp").write_text(text)
         (options.plugin / "CMakeLists.txt").write_text(f"cmake_minimum_required(VERSION 3.25)\nproject({options.name} LANGUAGES CXX)\n"
                                                        f"find_package(glint REQUIRED COMPONENTS plugin)\nglint_add_plugin({options.name} {options.name}.cpp)\n")
-        print(f"wrote {options.plugin}\nbuild it: cmake -S {options.plugin} -B {options.plugin}/build && cmake --build {options.plugin}/build\n"
-              f"use it: glint --plugin {options.plugin}/build/{options.name}.so run WKND_PT --set {key_of(interface)}={options.name}")
+        print(f"wrote {options.plugin}\nbuild it, where PREFIX is that of cmake --install: cmake -S {options.plugin} -B {options.plugin}/build -DCMAKE_BUILD_TYPE=Release"
+              f" -DCMAKE_PREFIX_PATH=PREFIX && cmake --build {options.plugin}/build\n"
+              f"use it: glint --plugin {options.plugin}/build/{options.name}.so run WKND_PT {choice_of(interface, options.interface, options.name)}".rstrip())
         return
     file = policies[like].parent / f"{options.name}.cpp"
     file.write_text(text)
+    # The table has each replacement policy once, with the L1.
     key = "memory.l1.replacement" if key_of(interface) == "*.replacement" else key_of(interface)
     if not key.startswith("("):
         rows = TABLE.read_text().splitlines()

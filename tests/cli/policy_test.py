@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -191,6 +192,26 @@ class NewPolicy(GlintTest):
             self.assertIn(part, text)
         self.assertIn("core.issue,youngest_first,\n", (self.folder / policy_table.PATH).read_text())
         self.assertIn("youngest_first", (self.folder / "CHANGELOG.md").read_text())
+
+    def test_every_key_of_the_page_begins_a_plugin_and_the_hints_can_be_followed(self):
+        rows = (ROOT / "docs/howto/policy.md").read_text().split("## What there is to change")[1].splitlines()
+        keys = [key for row in rows for key in re.findall(r"`([\w.]+)`", row.rsplit("|", 2)[-2] if row.startswith("|") else "")]
+        self.assertGreater(len(keys), 20)
+        for key in [*keys, "SampleWay", "StatWriter", "Replacement"]:
+            with self.subTest(key=key):
+                folder = self.folder / key
+                done = subprocess.run([sys.executable, ROOT / "tools/new_policy.py", key, "mine", "--plugin", folder], capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn("-DCMAKE_PREFIX_PATH=PREFIX", done.stdout)
+                how = {"SampleWay": "--sample-by mine", "StatWriter": "", "Replacement": "--set memory.l1.replacement=mine"}.get(key, f"--set {key}=mine")
+                self.assertTrue(done.stdout.rstrip().endswith(f"run WKND_PT {how}".rstrip()), done.stdout)
+
+    def test_statistics_of_a_copy_have_its_own_name(self):
+        done = subprocess.run([sys.executable, ROOT / "tools/new_policy.py", "rt.prefetch", "mine", "--like", "next_line", "--plugin", self.folder / "mine"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = (self.folder / "mine/mine.cpp").read_text()
+        self.assertIn('group(parent, "mine")', text)
+        self.assertNotIn('"next_line"', text)
 
     def test_it_refuses_what_there_is_and_what_there_is_not(self):
         for words, message in ((("IssueScheduler", "gto"), "has a policy 'gto' already"), (("core.issue", "Gto"), "not a name of lower-case"), (("core.nothing", "x"), "no kind of policy"),
