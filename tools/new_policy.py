@@ -115,7 +115,8 @@ def main() -> None:
         at = max(i for i, row in enumerate(rows) if row.startswith(f"{key},")) + 1
         TABLE.write_text("\n".join([*rows[:at], f"{key},{options.name},", *rows[at:]]) + "\n")
     log = CHANGELOG.read_text()
-    CHANGELOG.write_text(log.replace("### Added\n\n", f"### Added\n\n- `{key} = \"{options.name}\"` is a new policy.\n", 1))
+    line = f"- `{key} = \"{options.name}\"` is a new policy.\n"
+    CHANGELOG.write_text(re.sub(r"### Added\n\n(?:[^-\n].*\n)?", lambda heading: heading[0] + line, log, count=1))  # behind a group's name
     print(f"wrote {file.relative_to(ROOT)}, a row in {TABLE.relative_to(ROOT)} and a line in CHANGELOG.md\n"
           f"build it: cmake --build --preset release; then tools/update_golden.py GLINT records its cycles and its keys")
 

@@ -191,7 +191,7 @@ class NewPolicy(GlintTest):
         for part in ('kName = "youngest_first"', "class YoungestFirst final", "const Register<IssueScheduler, YoungestFirst> registered;", "// SPDX-License-Identifier"):
             self.assertIn(part, text)
         self.assertIn("core.issue,youngest_first,\n", (self.folder / policy_table.PATH).read_text())
-        self.assertIn("youngest_first", (self.folder / "CHANGELOG.md").read_text())
+        self.assertRegex((self.folder / "CHANGELOG.md").read_text(), r"### Added\n\n\w.*\n- `core.issue = \"youngest_first\"` is a new policy.\n- ")
 
     def test_every_key_of_the_page_begins_a_plugin_and_the_hints_can_be_followed(self):
         rows = (ROOT / "docs/howto/policy.md").read_text().split("## What there is to change")[1].splitlines()
