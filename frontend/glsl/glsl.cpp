@@ -17,6 +17,7 @@
 #include "frontend/glsl/newer_glsl.h"
 #include "frontend/glsl/token_count.h"
 #include "frontend/program_bytes.h"
+#include "frontend/spirv/glslang_repairs.h"
 #include "frontend/spirv/known_positions.h"
 #include "frontend/spirv/limits.h"
 #include "frontend/spirv/spirv.h"
@@ -143,7 +144,11 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   words = with_known_positions(std::move(words));
   refuse_unknown_capabilities(words, path);
   check_limits(words, path);
-  const std::string invalid = validate_made_spirv(words);
+  std::string invalid = validate_made_spirv(words);
+  if (!invalid.empty()) {
+    words = with_glslang_repairs(words);
+    invalid = validate_made_spirv(words);
+  }
   if (!invalid.empty()) throw UserError({path, 0, 0}, "glslang made invalid SPIR-V\n" + invalid);
   return words;
 }

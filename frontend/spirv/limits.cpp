@@ -24,7 +24,7 @@ using enum spv::Op;
 using Inst = std::span<const uint32_t>;
 
 // Counts constructs around a place, of both kinds and of loops alone.
-enum Kind : size_t { kConstructs, kLoops, kNumKinds };
+enum Construct : size_t { kConstructs, kLoops, kNumKinds };
 
 struct Place {
   std::array<uint32_t, kNumKinds> depth{};
@@ -118,7 +118,7 @@ class Reader {
       around_.push_back((around_.empty() ? 0 : around_.back()) + (op == OpLoopMerge));
     }
     const Place here{{uint32_t(around_.size()), around_.empty() ? 0 : around_.back()}, lines.line()};
-    for (const Kind kind : {kConstructs, kLoops})
+    for (const Construct kind : {kConstructs, kLoops})
       if (here.depth[kind] > function_->deepest[kind].depth[kind]) function_->deepest[kind] = here;
     if (op == OpFunctionCall && w.size() > 3) function_->calls.push_back({w[3], here});
     const bool is_access = op == OpStore || op == OpLoad || op == OpAccessChain ||
@@ -137,7 +137,7 @@ class Reader {
 
 // Returns the deepest place of a function with what it calls. A function that calls itself is refused
 // elsewhere, and its inner call is not followed.
-Place deepest_of(const SizeSurvey& module, Kind kind, uint32_t id, std::map<uint32_t, Place>& known) {
+Place deepest_of(const SizeSurvey& module, Construct kind, uint32_t id, std::map<uint32_t, Place>& known) {
   if (const auto found = known.find(id); found != known.end()) return found->second;
   const auto function = module.functions.find(id);
   if (function == module.functions.end()) return {};
@@ -150,7 +150,7 @@ Place deepest_of(const SizeSurvey& module, Kind kind, uint32_t id, std::map<uint
   return known[id] = deepest;
 }
 
-Place deepest_of(const SizeSurvey& module, Kind kind) {
+Place deepest_of(const SizeSurvey& module, Construct kind) {
   std::map<uint32_t, Place> known;
   Place deepest;
   for (const auto& [id, function] : module.functions)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/diagnostics.h"
+#include "exec/texture_format.h"
 #include "frontend/compile.h"
 #include "frontend/spirv/module_repairs.h"
 #include "tests/shaders/compute_lab.h"
@@ -25,6 +26,30 @@ TEST_CASE("an any-hit shader ends in a function that a loop's continue construct
     if (y == 3) return Row{304, 0, hit, 2};
     return Row{404, 1000, hit, 0};
   });
+}
+
+TEST_CASE(
+    "small constants of specialisation constants, and structures that ?: takes from blocks, have their "
+    "values") {
+  ComputeLab lab("compute/glslang_repairs.comp");
+  lab.glsl.specialization = {{0, std::bit_cast<uint32_t>(2.5f)}, {1, uint32_t(-7)}};
+  lab.buffers[0] = Words(32 * 12);
+  lab.buffers[1] = Words(128);
+  for (const LabOptions& options : compute_lab_options()) {
+    ComputeLab after = lab;
+    after.run(options);
+    for (uint32_t lane = 0; lane < 32; ++lane) {
+      INFO(to_string(options) << ", thread " << lane);
+      const uint32_t other = lane ^ 1;
+      const bool is_kept = lane > 20;
+      const uint32_t* row = after.buffers[1].data() + size_t{4} * lane;
+      CHECK(row[0] == (is_kept ? 200 : 100) + other);
+      CHECK(row[1] == (is_kept ? 900 : 700) + other);
+      CHECK(row[2] == (is_kept ? 2 : 1) * other);
+      const uint32_t halves = 0x4100u | uint32_t{exec::to_half(float(lane))} << 16;  // 2.5 is 0x4100
+      CHECK(row[3] == (uint32_t(int(lane) - 7) ^ halves));
+    }
+  }
 }
 
 TEST_CASE("arrays are as long as the specialisation constants that are set say") {
