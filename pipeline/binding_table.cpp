@@ -49,15 +49,18 @@ class Table {
       largest = std::max<uint64_t>(largest, record.data.size());
     const uint64_t need = round_up(kHandleBytes + largest, kHandleAlignment);
     if (need > kMaxStride)
-      throw UserError(fmt::format("a {} record has {} bytes, and with its handle at most {} fit", name,
+      throw UserError(region.where,
+                      fmt::format("a {} record has {} bytes, and with its handle at most {} fit", name,
                                   largest, kMaxStride));
     if (!region.stride) return uint32_t(need);
     if (*region.stride % kHandleAlignment || *region.stride > kMaxStride)
       throw UserError(
+          region.where,
           fmt::format("the stride of the {} region is {}: it must be a multiple of {} and at most {}", name,
                       *region.stride, kHandleAlignment, kMaxStride));
     if (*region.stride != 0 && region.records.size() > 1 && *region.stride < need)
-      throw UserError(fmt::format("the stride of the {} region is {}, and its largest record needs {}", name,
+      throw UserError(region.where,
+                      fmt::format("the stride of the {} region is {}, and its largest record needs {}", name,
                                   *region.stride, need));
     return *region.stride;
   }

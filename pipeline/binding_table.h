@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "exec/image.h"
 
 namespace glint::pipeline {
@@ -34,6 +35,7 @@ struct TableRegion {
   // These are the bytes from one record to the next. If the value is absent, the smallest stride that holds
   // every record is used. If it is 0, only the first record is used.
   std::optional<uint32_t> stride;
+  SourceLocation where = {};  // what an error of the stride names, if there is a file
 };
 
 struct TableInput {

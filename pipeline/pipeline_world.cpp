@@ -298,9 +298,15 @@ void PipelineWorld::fill_records(const Built& launch) {
   TableInput input;
   input.raygen = record(launch, *launch.description.raygen, input, false);
   const auto fill = [&](TableRegion& to, const RegionDescription& from, bool is_hit) {
-    to.stride = from.stride;
+    to.stride = from.stride, to.where = from.stride_where;
     for (const RecordDescription& each : from.records)
       to.records.push_back(record(launch, each, input, is_hit));
+    const auto larger = [](const TableRecord& a, const TableRecord& b) {
+      return a.data.size() < b.data.size();
+    };
+    const auto largest = std::max_element(to.records.begin(), to.records.end(), larger);
+    if (!to.stride && largest != to.records.end())
+      to.where = from.records[size_t(largest - to.records.begin())].where;
   };
   fill(input.miss, description_.miss, false);
   fill(input.hit, description_.hit, true);

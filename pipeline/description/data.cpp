@@ -112,6 +112,20 @@ bool is_type(const std::string& name) {
   return std::find(number_types().begin(), number_types().end(), name) != number_types().end();
 }
 
+std::string text_of(const Value& value) {
+  if (value.kind == Value::Kind::Integer) return fmt::format("{}", value.whole);
+  if (value.kind == Value::Kind::Real) return fmt::format("{}", value.real);
+  return value.kind == Value::Kind::Text ? fmt::format("'{}'", value.text) : "this";
+}
+
+std::string note_of(const Value& value) {
+  if (value.kind == Value::Kind::Real)
+    return "numbers with a fraction need a type of floats: type = \"f32\", or { f32 = [...] }";
+  return value.kind == Value::Kind::Text
+             ? "only a u64 may be a text, the name of a buffer whose address it is"
+             : "";
+}
+
 void append_typed(const Value& list, const std::string& type, const AddressOf& address,
                   std::vector<std::byte>& out, Diagnostics& errors) {
   std::vector<const Value*> numbers;
@@ -120,7 +134,8 @@ void append_typed(const Value& list, const std::string& type, const AddressOf& a
   for (const Value* number : numbers) {
     out.resize(out.size() + each);
     if (!put_number(type, *number, address, out.data() + out.size() - each))
-      return errors.error(number->where, fmt::format("this is not a {}", type));
+      return errors.error(number->where, fmt::format("{} is not a {}", text_of(*number), type),
+                          note_of(*number));
   }
 }
 

@@ -127,6 +127,7 @@ struct RecordDescription {
 struct RegionDescription {
   std::vector<RecordDescription> records;
   std::optional<uint32_t> stride;
+  SourceLocation stride_where;
 };
 
 struct MachineDescription {

@@ -98,7 +98,8 @@ void read_strides(Reading& r, TableReader& root) {
     for (const auto& [key, region] : {std::pair{"miss_stride", &r.out.miss},
                                       {"hit_stride", &r.out.hit},
                                       {"callable_stride", &r.out.callable}})
-      if (const auto stride = t.optional_integer(key, 0, 4096)) region->stride = uint32_t(*stride);
+      if (const auto stride = t.optional_integer(key, 0, 4096))
+        region->stride = uint32_t(*stride), region->stride_where = t.take(key)->where;
     t.finish();
   }
 }

@@ -47,8 +47,8 @@ Value value_of(const toml::node& node, const std::string& file) {
 }
 
 const char* name_of(Value::Kind kind) {
-  constexpr const char* kNames[] = {"nothing",  "true or false", "a whole number", "a number",
-                                    "a string", "a list",        "a table"};
+  constexpr const char* kNames[] = {"a date or a time", "true or false", "a whole number", "a number",
+                                    "a string",         "a list",        "a table"};
   static_assert(std::size(kNames) == size_t(Value::Kind::Table) + 1);
   return kNames[size_t(kind)];
 }

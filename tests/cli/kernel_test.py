@@ -51,6 +51,8 @@ class Kernels(GlintTest):
     def test_init_refuses_what_a_launch_file_cannot_give(self):
         self.write("a.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n.visible .entry k(.param .align 4 .b8 block[12]) { ret; }\n")
         self.expect(2, ["parameter 'block' has 12 bytes"], "init", "a.toml", "a.ptx")
+        self.write("none.toml", 'grid = 1\nkernel = "nowhere.ptx"\n')
+        self.expect(2, ["none.toml:2:10: error: cannot read the kernel 'nowhere.ptx'"], "run", "none.toml", "--out", "out")
         self.expect(2, ["one PTX file"], "init", "a.toml", "a.ptx", "b.comp")
         self.write("none.ptx", ".version 7.0\n.target sm_70\n.address_size 64\n")
         self.expect(2, ["no kernel"], "init", "a.toml", "none.ptx")

@@ -61,8 +61,14 @@ class NumbersTest(GlintTest):
         self.refuse(["p.toml:11:1: error: the specialisation constant is of type s16"], self.constants("SHORT = -32769"))
         self.write("a.comp", STORE)
         for number in ("256", "-129"):
-            self.refuse(["p.toml:9:", "this is not a u8"], BUFFER + f'type = "u8"\ndata = [1, 2, 3, {number}]\n')
+            self.refuse(["p.toml:9:", f"{number} is not a u8"], BUFFER + f'type = "u8"\ndata = [1, 2, 3, {number}]\n')
         self.assertEqual(self.bytes_of(BUFFER + 'type = "u8"\ndata = [255, -1, 128, -128]\nsave = "o.raw"\n'), bytes([255, 255, 128, 128]))
+
+    def test_a_number_of_another_kind_is_named_with_what_to_write(self):
+        self.write("a.comp", STORE)
+        self.refuse(["p.toml:8:12: error: 0.5 is not a u32", "numbers with a fraction need a type of floats"], BUFFER + "data = [1, 0.5]\n")
+        self.refuse(["'x' is not a u32", "the name of a buffer"], BUFFER + 'data = ["x"]\n')
+        self.refuse(["'set' is a date or a time, expected a whole number"], BUFFER.replace("set = 0", "set = 1979-05-27") + "data = [1]\n")
 
     def test_generators_draw_numbers_of_the_buffers_type(self):
         self.write("a.comp", STORE)

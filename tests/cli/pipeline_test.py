@@ -453,6 +453,12 @@ class Mistakes(PipelineTest):
         self.copy("materials")
         self.refuse(["the record's data have 0 bytes, and the shader's record has 16", "materials.rchit:5"], ("data = { tint = [1.0, 0.4, 0.3], painter = 0 }\n", ""))
 
+    def test_records_that_are_too_long_and_strides_that_are_too_short_are_refused_at_their_lines(self):
+        self.copy("materials")
+        data = "data = { tint = [1.0, 0.4, 0.3], painter = 0 }"
+        self.refuse(["edited.toml:12:1: error: a hit record has 4096 bytes, and with its handle at most 4096 fit"], (data, f"data = {{ u8 = [{'1, ' * 4096}] }}"))
+        self.refuse(["edited.toml:3:1: error: the stride of the hit region is 32, and its largest record needs"], ("[raygen]", "[table]\nhit_stride = 32\n[raygen]"))
+
     def test_integers_in_a_float_image_are_refused(self):
         self.refuse(["format r32_uint, whose texels are u32, and the shader's are f32"], ('save =', 'format = "r32ui"\nsave ='))
 

@@ -14,9 +14,9 @@
 namespace glint::app {
 namespace {
 
-std::string read_text(const std::string& path) {
+std::string read_text(const std::string& path, const SourceLocation& where) {
   std::optional<std::string> text = setup::text_of_file(path);
-  if (!text) throw UserError({}, fmt::format("cannot read '{}'", path));
+  if (!text) throw UserError(where, fmt::format("cannot read the kernel '{}'", path));
   return std::move(*text);
 }
 
@@ -43,7 +43,7 @@ Kernels::Kernels(const LaunchFile& file, const std::string& path, const pipeline
 void Kernels::compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu, exec::OnFault on_fault) {
   std::unique_ptr<pipeline::KernelWorld>& made = worlds_[{launch.kernel, launch.entry, launch.contract}];
   if (made) return;
-  const std::string text = read_text(launch.kernel);
+  const std::string text = read_text(launch.kernel, launch.kernel_where);
   const frontend::PtxOptions compiler = pipeline::ptx_options(gpu.compiler, launch.contract);
   made = std::make_unique<pipeline::KernelWorld>(
       frontend::compile_ptx(text, launch.kernel, launch.entry, compiler), memory_);

@@ -76,7 +76,10 @@ class Reader {
  private:
   // Reads what a launch has in common with a file. What stands in `out` already are the defaults.
   void launch(const toml::table& table, KernelLaunch& out) {
-    if (const auto kernel = text(table, "kernel")) out.kernel = beside(*kernel), out.entry = "";
+    if (const auto kernel = text(table, "kernel")) {
+      out.kernel = beside(*kernel), out.entry = "";
+      out.kernel_where = where(*table.get("kernel"));
+    }
     out.entry = text(table, "entry").value_or(out.entry);
     out.contract = flag(table, "contract", out.contract);
     size_of(table, "grid", out.grid.grid);

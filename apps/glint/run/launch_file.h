@@ -29,7 +29,7 @@ struct KernelLaunch {
   bool warm = false;     // It begins with what the launch before it left in the caches.
   pipeline::KernelGrid grid;
   std::vector<LaunchArgument> arguments;
-  SourceLocation where;
+  SourceLocation where, kernel_where;  // of the launch, and of the key that names its kernel
 };
 
 struct LaunchFile {
