@@ -94,6 +94,11 @@ class Walk {
       out.number = "u64";
       out.offsets = {0};
       out.bytes = kAddressBytes;
+      if (!is_target_) {
+        is_target_ = true;
+        out.target.push_back(of(module_.type(id).element, {}));
+        is_target_ = false;
+      }
       return out;
     }
     out.number = "u32";
@@ -107,6 +112,7 @@ class Walk {
 
   const Module& module_;
   Layout layout_;
+  bool is_target_ = false;
 };
 
 void describe(const BlockType& type, const std::string& name, uint32_t offset,
@@ -127,6 +133,12 @@ void describe(const BlockType& type, const std::string& name, uint32_t offset,
 
 BlockType block_type(const Module& module, Id type) {
   return Walk(module).of(type, {});
+}
+
+bool has_targets(const BlockType& type) {
+  return !type.target.empty() || std::any_of(type.element.begin(), type.element.end(), has_targets) ||
+         std::any_of(type.members.begin(), type.members.end(),
+                     [](const BlockMember& member) { return has_targets(member.type); });
 }
 
 std::vector<std::string> describe_members(const BlockType& block) {

@@ -21,7 +21,13 @@ struct BlockType {
   uint32_t bytes = 0;                // static size; 0 for a runtime array
   std::vector<BlockType> element;    // Array: its one element type
   std::vector<BlockMember> members;  // Struct
+  // What an address leads to, when it stands in the block itself: a list whose elements lead to each other
+  // has no end.
+  std::vector<BlockType> target;
 };
+
+// Returns whether a block has addresses whose targets are known.
+bool has_targets(const BlockType& type);
 
 struct BlockMember {
   std::string name;

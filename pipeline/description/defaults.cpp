@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
 #include <set>
 #include <utility>
 
-#include "exec/texture_format.h"
 #include "pipeline/description/modules.h"
 #include "pipeline/description/usual_values.h"
 
@@ -26,6 +25,8 @@ using frontend::BlockType;
 
 // Choice: these defaults are the side of a picture and the number of elements of run-time arrays.
 constexpr uint32_t kSide = 256, kElements = 65536;
+// Choice: shaders that add to an address find so many elements behind it.
+constexpr uint32_t kTargets = 1024;
 
 // Returns the number type that all of a block is made of, or u32 when there is no such type.
 std::string number_of(const BlockType& type) {
@@ -48,16 +49,6 @@ uint32_t default_bytes(const BlockType& block) {
       bytes = last.offset + kElements * std::max(1u, last.type.stride);
   }
   return (bytes + 15) / 16 * 16;
-}
-
-// Returns the default of a constant as the value of a key.
-std::string text_of(const frontend::SpecConstant& c) {
-  if (c.number == "bool") return c.value ? "true" : "false";
-  if (c.number == "f16") return fmt::format("{}", exec::from_half(uint16_t(c.value)));
-  if (c.number == "f32") return fmt::format("{}", std::bit_cast<float>(uint32_t(c.value)));
-  if (c.number == "f64") return fmt::format("{}", std::bit_cast<double>(c.value));
-  if (c.number[0] == 's' && c.number != "s64") return fmt::format("{}", int32_t(c.value));
-  return fmt::format("{}", int64_t(c.value));
 }
 
 const char* kScene = R"(
@@ -94,6 +85,7 @@ class Writer {
     write_push_constants();
     write_specialization();
     for (const auto& [place, use] : modules_.bindings()) write_binding(use);
+    write_targets();
     if (has_structures_) write_structures();
     return out_;
   }
@@ -123,7 +115,7 @@ class Writer {
       if (m && !m->reflection.shader_record.members.empty()) {
         for (const std::string& member : frontend::describe_members(m->reflection.shader_record))
           line("# {}", member);
-        line("data = {}", usual_value("", m->reflection.shader_record, kSide));
+        line("data = {}", value_of("", m->reflection.shader_record));
         return;
       }
   }
@@ -216,7 +208,7 @@ class Writer {
       if (block.members.empty()) continue;
       line("\n[push_constants]");
       for (const auto& member : block.members)
-        line("{} = {}", member.name, usual_value(member.name, member.type, kSide));
+        line("{} = {}", member.name, value_of(member.name, member.type));
       return;
     }
   }
@@ -228,7 +220,7 @@ class Writer {
         const std::string name = c.name.empty() ? fmt::format("{}", c.id) : c.name;
         if (written.empty()) line("\n# Specialisation constants and their defaults.\n[specialization]");
         if (!written.insert(name).second) continue;
-        line("# {} = {}  # constant_id {}, {}", name, text_of(c), c.id, c.number);
+        line("# {} = {}  # constant_id {}, {}", name, default_text(c), c.id, c.number);
       }
   }
 
@@ -301,15 +293,43 @@ class Writer {
   void write_buffer(const frontend::Binding& b, const std::string& name, uint32_t element) {
     write_slot("buffer", b, name, element);
     for (const std::string& member : frontend::describe_members(b.block)) line("# {}", member);
-    if (b.kind == BindingKind::UniformBuffer) {
-      line("data = {}", usual_value("", b.block, kSide));
-      return;
+    if (b.kind == BindingKind::UniformBuffer)
+      line("data = {}", value_of("", b.block));
+    else
+      write_contents(b.block, element ? fmt::format("{}{}", name, element) : name, name);
+  }
+
+  void write_contents(const BlockType& block, const std::string& name, const std::string& meaning,
+                      uint32_t elements = 1) {
+    const std::string number = number_of(block);
+    const uint64_t bytes = std::max<uint64_t>(default_bytes(block), uint64_t{elements} * block.bytes);
+    line("type = {}\nbytes = {}", quoted(number), bytes);
+    if (has_targets(block))
+      line("data = {}", value_of("", block));
+    else
+      line("{}; or data = [...], or file = \"...\"", init_of(meaning, number));
+    line("show = 8\nsave = {}", quoted(name + ".npy"));
+  }
+
+  // Returns a value of a block's member. Each address leads to a buffer of its member's name, which all
+  // members of that name share.
+  std::string value_of(const std::string& name, const BlockType& type) {
+    return usual_value(name, type, kSide, [&](const std::string& member, const BlockType& target) {
+      std::string buffer = member;
+      const auto is_binding = [&](const auto& one) { return one.second.binding.name == buffer; };
+      while (std::any_of(modules_.bindings().begin(), modules_.bindings().end(), is_binding))
+        buffer += "_target";
+      targets_.try_emplace(buffer, target);
+      return buffer;
+    });
+  }
+
+  void write_targets() {
+    for (const auto& [name, block] : targets_) {
+      line("\n# An address leads to this buffer.\n[[buffer]]\nname = {}", quoted(name));
+      for (const std::string& member : frontend::describe_members(block)) line("# {}", member);
+      write_contents(block, name, name, kTargets);
     }
-    const std::string number = number_of(b.block);
-    line("type = {}\nbytes = {}\n{}; or data = [...], or file = \"...\"", quoted(number),
-         default_bytes(b.block), init_of(name, number));
-    line("show = 8");
-    line("save = {}", quoted(fmt::format("{}{}.npy", name, element ? fmt::format("{}", element) : "")));
   }
 
   void write_instances() {
@@ -339,6 +359,7 @@ class Writer {
   std::array<uint32_t, 2> threads_{};
   int num_hits_ = 0, box_record_ = -1, triangle_record_ = -1;
   bool has_any_hit_ = false, has_structures_ = false;
+  std::map<std::string, BlockType> targets_;  // of addresses, by the names of their buffers
 };
 
 }  // namespace

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <cstddef>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <initializer_list>
 #include <vector>
+
+#include "exec/texture_format.h"
 
 namespace glint::pipeline {
 namespace {
@@ -106,16 +109,28 @@ std::string numbers_text(const std::string& name, const BlockType& type, uint32_
 
 }  // namespace
 
-std::string usual_value(const std::string& name, const BlockType& type, uint32_t side) {
+std::string default_text(const frontend::SpecConstant& c) {
+  if (c.number == "bool") return c.value ? "true" : "false";
+  if (c.number == "f16") return fmt::format("{}", exec::from_half(uint16_t(c.value)));
+  if (c.number == "f32") return fmt::format("{}", std::bit_cast<float>(uint32_t(c.value)));
+  if (c.number == "f64") return fmt::format("{}", std::bit_cast<double>(c.value));
+  if (c.number[0] == 's' && c.number != "s64") return fmt::format("{}", int32_t(c.value));
+  return fmt::format("{}", int64_t(c.value));
+}
+
+std::string usual_value(const std::string& name, const BlockType& type, uint32_t side,
+                        const NameTarget& name_target) {
+  if (!type.target.empty()) return fmt::format("\"{}\"", name_target(name, type.target[0]));
   if (type.kind == BlockType::Kind::Array) {
-    const std::string each = usual_value(name, type.element[0], side);
-    return fmt::format("[{}]",
-                       fmt::join(std::vector<std::string>(std::min(type.count, kMostWritten), each), ", "));
+    const uint32_t count = type.count == 0 ? has_targets(type) : std::min(type.count, kMostWritten);
+    const std::string each = count ? usual_value(name, type.element[0], side, name_target) : "";
+    return fmt::format("[{}]", fmt::join(std::vector<std::string>(count, each), ", "));
   }
   if (type.kind == BlockType::Kind::Struct) {
     std::vector<std::string> members;
     for (const auto& member : type.members)
-      members.push_back(fmt::format("{} = {}", member.name, usual_value(member.name, member.type, side)));
+      members.push_back(
+          fmt::format("{} = {}", member.name, usual_value(member.name, member.type, side, name_target)));
     return fmt::format("{{ {} }}", fmt::join(members, ", "));
   }
   std::string small = name;

@@ -374,6 +374,34 @@ void main() { words[0] = kScale; }
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(self.run_file("scaled.toml").stdout, r"Words +7 0 0")
 
+    def test_addresses_of_a_new_file_lead_to_buffers(self):
+        self.write("walk.comp", """#version 460
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+layout(local_size_x = 4) in;
+layout(buffer_reference, scalar) buffer Numbers { float v[]; };
+layout(buffer_reference) buffer Node;
+layout(buffer_reference, scalar) buffer Node { uint step; Node next; };
+struct Mesh { Numbers corners; uint count; };
+layout(set = 0, binding = 0, scalar) buffer Meshes { Mesh meshes[]; };
+layout(set = 0, binding = 1) buffer Out { uint o[]; };
+layout(push_constant, scalar) uniform Push { Node head; Numbers o; } push;
+void main() {
+  const uint lane = gl_GlobalInvocationID.x;
+  push.o.v[lane] = lane;
+  Node behind = push.head + 1000;  // the sum of an address and a number of structures
+  o[lane] = uint(push.o.v[lane] + meshes[0].corners.v[9]) + behind.step + uint(uint64_t(push.head.next)) + uint(uint64_t(meshes[1].corners));
+}
+""")
+        done = self.glint("init", "walk.toml", "walk.comp")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = (self.folder / "walk.toml").read_text()
+        for line in ('head = "head"', 'o = "o"', 'data = { meshes = [{ corners = "corners", count = 4 }] }', 'name = "corners"'):
+            self.assertIn(line + "\n", text)
+        self.assertRegex(self.run_file("walk.toml").stdout, r"Out +0 1 2 3 4 5")
+        self.assertRegex(self.run_file("walk.comp").stdout, r"Out +0 1 2 3 4 5")
+
     def test_init_does_not_write_over_a_file(self):
         self.write("there.toml", "x")
         self.expect(2, ["exists already", "--force"], "init", "there.toml", ROOT / "examples/reduction/reduction.comp")
