@@ -68,7 +68,12 @@ std::vector<uint32_t> read_module(const std::string& path, const frontend::GlslO
   if (!is_binary(path)) return frontend::glsl_to_spirv(path, glsl);
   const std::string bytes = read_file(path, {});
   if (path.ends_with(".spvasm")) return frontend::assemble_spirv(bytes, path);
-  if (bytes.size() % 4 != 0 || bytes.size() < 20)
+  constexpr size_t kHeaderBytes = 20;
+  if (bytes.size() < kHeaderBytes)
+    throw UserError({path, 0, 0},
+                    fmt::format("this is not a SPIR-V module: it has {} bytes, and a module has at least {}",
+                                bytes.size(), kHeaderBytes));
+  if (bytes.size() % 4 != 0)
     throw UserError({path, 0, 0}, "this is not a SPIR-V module: its size is not a multiple of 4");
   std::vector<uint32_t> words(bytes.size() / 4);
   std::memcpy(words.data(), bytes.data(), bytes.size());

@@ -13,6 +13,9 @@ class CommandLines(GlintTest):
                 ("rnu WKND", "there is no command 'rnu'", "did you mean 'run'?"),
                 ("run WKND --spp -1", "--spp: '-1' is not a whole number from 1 to 65536"),
                 ("run WKND --spp 99999999999999999999", "--spp: '99999999999999999999' is not a whole number"),
+                ("run WKND --seed -5", "--seed: '-5' is not a whole number from 0 on"),
+                ("report a --timeline-sm x", "--timeline-sm: 'x' is not a whole number from 0 on"),
+                ("run empty.spv", "empty.spv: error: this is not a SPIR-V module: it has 0 bytes, and a module has at least 20"),
                 ("run WKND --sample 0", "--sample: '0' is not a number above 0"),
                 ("run WKND --max-instructions inf", "--max-instructions: 'inf' is not a whole number from 1 to 1000000000000000000"),
                 ("run WKND --printf-limit 99999999999999999999", "--printf-limit: '99999999999999999999' is not a whole number"),
@@ -27,6 +30,7 @@ class CommandLines(GlintTest):
                 ("compile -D =3 a.comp", "--define has no macro's name in ''"),
                 ("compile -D 1x a.comp", "--define has no macro's name in '1x'")]:
             with self.subTest(arguments):
+                self.write("empty.spv", "")
                 self.expect(2, parts, *arguments.split())
 
     def test_an_empty_value_is_refused_wherever_a_text_is_expected(self):

@@ -197,6 +197,16 @@ std::vector<std::string> in_option_form(std::vector<std::string> words) {
   return words;
 }
 
+// Returns a message about numbers without a range in the form of all others. CLI11 says "Could not convert:
+// NAME = TEXT".
+std::string message_of(const std::string& said) {
+  constexpr std::string_view kStart = "Could not convert: ";
+  const size_t at = said.find(" = ");
+  if (!said.starts_with(kStart) || at == std::string::npos) return said;
+  return fmt::format("{}: '{}' is not a whole number from 0 on",
+                     said.substr(kStart.size(), at - kStart.size()), said.substr(at + 3));
+}
+
 }  // namespace
 
 ParseOutcome CommandLine::parse(int argc, char** argv) {
@@ -208,7 +218,7 @@ ParseOutcome CommandLine::parse(int argc, char** argv) {
     const std::vector<std::string> unknown = app_->remaining();
     if (app_->get_subcommands().empty() && !unknown.empty() && !unknown[0].starts_with('-'))
       return {false, fmt::format("there is no command '{}'", unknown[0]), {}};
-    if (error.get_exit_code() != 0) return {false, error.what(), {}};
+    if (error.get_exit_code() != 0) return {false, message_of(error.what()), {}};
     std::ostringstream out;
     app_->exit(error, out, out);
     return {true, {}, out.str()};
