@@ -254,7 +254,7 @@ class Writer {
           line("init = \"checker\"  # or file = \"picture.png\"\nsize = [{}]", size_text(b, 64, 64));
           if (b.multisampled) line("samples = 4");
           if (b.texel == "f32") line("format = \"rgba8_unorm\"");
-          line("filter = \"linear\"\nwrap = \"repeat\"");
+          line("filter = {}\nwrap = \"repeat\"", b.texel == "f32" ? "\"linear\"" : "\"nearest\"");
           break;
         case BindingKind::Sampler:
           write_slot("sampler", b, name, element);

@@ -77,7 +77,9 @@ struct ImageDescription {
   std::array<double, 4> value{0, 0, 0, 0};
   std::vector<double> data;  // the format's channels of each texel: x first, then y, z and layers
   uint64_t seed = 1;
-  exec::Sampler sampler;
+  exec::Sampler sampler;  // Its border has bits of floats.
+  std::array<double, 4> border{0, 0, 0, 0};
+  bool has_filter = false;  // Without one, images of integers take the nearest texel.
   std::vector<Save> saves;
   SourceLocation where;
 };

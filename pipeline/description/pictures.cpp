@@ -156,6 +156,15 @@ void check_shape(const ImageDescription& image, const exec::ImageView& view) {
                                 view.width, view.height, view.depth, view.layers, wrong));
 }
 
+// Returns how an image of integers is sampled. Texels of integers cannot be filtered.
+exec::Sampler sampler_of_integers(const ImageDescription& image) {
+  exec::Sampler out = image.sampler;
+  if (!image.has_filter) out.mag = out.min = exec::Filter::Nearest;
+  for (size_t c = 0; c < 4; ++c)
+    out.border[c] = uint32_t(int64_t(std::fmax(-0x1p31, std::fmin(image.border[c], 0x1p32 - 1))));
+  return out;
+}
+
 }  // namespace
 
 Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel,
@@ -175,7 +184,8 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
                                           : plain);
   const exec::FormatInfo& info = exec::info_of(view.format);
   check_format(image, info, texel);
-  view.name = image.name, view.shape = shape, view.sampler = image.sampler,
+  view.name = image.name, view.shape = shape;
+  view.sampler = exec::is_integer(info) ? sampler_of_integers(image) : image.sampler;
   view.layers = image.layers * image.samples, view.samples = image.samples;
   if (isa::is_cube(shape) && image.files.empty() && image.layers == 1) view.layers = 6;
 

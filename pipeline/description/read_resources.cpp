@@ -26,7 +26,7 @@ std::string name_of_slot(const char* kind, const Slot& slot) {
   return slot.is_bound() ? fmt::format("{}_{}_{}", kind, slot.set.value_or(0), *slot.binding) : kind;
 }
 
-exec::Sampler read_sampler_keys(TableReader& t) {
+exec::Sampler read_sampler_keys(Reading& r, TableReader& t) {
   exec::Sampler out;
   const std::vector<std::string> filters{"nearest", "linear"};
   const auto filter = [&](const char* key, const std::string& fallback) {
@@ -44,6 +44,9 @@ exec::Sampler read_sampler_keys(TableReader& t) {
     out.wrap[i] =
         exec::Wrap(std::find(wraps.begin(), wraps.end(), t.name(keys[i], all, wraps)) - wraps.begin());
   const std::vector<double> border = t.numbers("border");
+  if (border.size() > 4)
+    r.errors.error(t.take("border")->where,
+                   fmt::format("'border' has {} numbers, expected up to four", border.size()));
   for (size_t i = 0; i < std::min<size_t>(4, border.size()); ++i)
     out.border[i] = std::bit_cast<uint32_t>(float(border[i]));
   out.lod_bias = float(t.number("lod_bias", 0));
@@ -101,7 +104,10 @@ ImageDescription read_image(Reading& r, const Value& value) {
   const std::vector<double> color = t.numbers("value");
   for (size_t i = 0; i < 4; ++i) out.value[i] = i < color.size() ? color[i] : i == 3 ? 1 : 0;
   out.seed = uint64_t(t.integer("seed", 1, 0, INT64_MAX));
-  out.sampler = read_sampler_keys(t);
+  out.sampler = read_sampler_keys(r, t);
+  for (const char* key : {"filter", "mag_filter", "min_filter"}) out.has_filter |= t.take(key) != nullptr;
+  const std::vector<double> border = t.numbers("border");
+  std::copy_n(border.begin(), std::min<size_t>(4, border.size()), out.border.begin());
   out.saves = read_saves(t);
   t.finish();
   return out;
@@ -113,7 +119,7 @@ SamplerDescription read_sampler(Reading& r, const Value& value) {
   out.where = value.where;
   out.slot = read_slot(t);
   out.name = t.text("name", "sampler");
-  out.sampler = read_sampler_keys(t);
+  out.sampler = read_sampler_keys(r, t);
   t.finish();
   return out;
 }

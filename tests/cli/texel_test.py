@@ -106,6 +106,41 @@ save = "out.csv"
 """
 
 
+INTEGERS = """#version 460
+layout(local_size_x = 1) in;
+layout(set = 0, binding = 0) uniform usampler2D counts;
+layout(set = 0, binding = 1) uniform isampler2D depths;
+layout(set = 0, binding = 2) buffer Out { uvec4 o[4]; };
+void main() {
+  o[0] = textureLod(counts, vec2(1.5), 0.0), o[1] = uvec4(textureLod(depths, vec2(-0.5), 0.0));
+  o[2] = textureLod(counts, vec2(0.6, 0.5), 0.0), o[3] = uvec4(textureLod(depths, vec2(0.4, 0.5), 0.0));
+}
+"""
+INTEGERS_FILE = """[compute]
+shader = "integers.comp"
+[launch]
+groups = 1
+[[image]]
+binding = 0
+size = [2, 1]
+format = "rgba32_uint"
+data = [1, 2, 3, 4, 5, 6, 7, 8]
+wrap = "clamp_to_border"
+border = [7, 4294967295, 16777217, 10]
+[[image]]
+binding = 1
+size = [2, 1]
+format = "rg16_sint"
+data = [-1, 2, 3, -4]
+wrap = "clamp_to_border"
+border = [-7, -8, 9, 10]
+[[buffer]]
+binding = 2
+bytes = 64
+save = "out.csv"
+"""
+
+
 class Texels(GlintTest):
     def setUp(self):
         super().setUp()
@@ -127,6 +162,16 @@ class Texels(GlintTest):
         self.run_text(0, [], SAMPLES_FILE)
         self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [205, 206, 207, 208])
         self.refused("size = [1, 1]\nlayers = 6", "size = [1, 1]\nlayers = 6\nsamples = 2", "image 'image_3_201'", "samples per texel, and the shader's has one")
+
+    def test_images_of_integers_take_the_nearest_texel_and_borders_of_integers(self):
+        self.write("integers.comp", INTEGERS)
+        self.run_text(0, [], INTEGERS_FILE)
+        rows = [7, 2**32 - 1, 2**24 + 1, 10, -7, -8, 0, 1, 5, 6, 7, 8, -1, 2, 0, 1]
+        self.assertEqual([int(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [v % 2**32 for v in rows])
+        self.run_text(2, ["p.toml:11:1: error: 'border' has 5 numbers, expected up to four"], INTEGERS_FILE.replace("16777217, 10]", "16777217, 10, 11]"))
+        self.assertEqual(self.glint("init", "new.toml", "integers.comp").returncode, 0)
+        self.assertEqual((self.folder / "new.toml").read_text().count('filter = "nearest"'), 2)
+        self.expect(0, [], "run", "new.toml", "--mode", "functional", "--out", "new")
 
     def test_files_that_the_run_writes_itself_or_that_are_saved_twice_are_refused(self):
         self.refused('"out.csv"', '"stats.csv"', "p.toml:", "the run itself writes 'stats.csv'")

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
