@@ -224,15 +224,23 @@ Picture make_picture(const ImageDescription& image, ImageShape shape, const std:
   return out;
 }
 
-std::vector<float> texels_as_floats(const exec::ImageView& view, const std::byte* data) {
+std::vector<uint32_t> texels_as_words(const exec::ImageView& view, const std::byte* data) {
   const exec::FormatInfo& info = exec::info_of(view.format);
-  std::vector<float> out;
+  std::vector<uint32_t> out;
   const size_t count = size_t{view.width} * view.height * view.depth * view.layers;
+  out.reserve(4 * count);
   for (size_t i = 0; i < count; ++i)
-    for (uint32_t word : exec::decode(view.format, data + i * info.bytes))
-      out.push_back(info.numeric == exec::Numeric::Uint   ? float(word)
-                    : info.numeric == exec::Numeric::Sint ? float(int32_t(word))
-                                                          : std::bit_cast<float>(word));
+    for (uint32_t word : exec::decode(view.format, data + i * info.bytes)) out.push_back(word);
+  return out;
+}
+
+std::vector<float> texels_as_floats(const exec::ImageView& view, const std::byte* data) {
+  const exec::Numeric numeric = exec::info_of(view.format).numeric;
+  std::vector<float> out;
+  for (uint32_t word : texels_as_words(view, data))
+    out.push_back(numeric == exec::Numeric::Uint   ? float(word)
+                  : numeric == exec::Numeric::Sint ? float(int32_t(word))
+                                                   : std::bit_cast<float>(word));
   return out;
 }
 

@@ -24,6 +24,10 @@ struct Picture {
 Picture make_picture(const ImageDescription& image, isa::ImageShape shape, const std::string& texel,
                      std::array<uint32_t, 3> fallback, const std::string& declared = {});
 
+// Returns the channels of a level-0 image, four words per texel, layer after layer: bits of floats, or
+// integers.
+std::vector<uint32_t> texels_as_words(const exec::ImageView& view, const std::byte* data);
+
 // Returns a level-0 image as it is saved to pictures: four floats per texel, layer after layer.
 std::vector<float> texels_as_floats(const exec::ImageView& view, const std::byte* data);
 

@@ -1,6 +1,8 @@
 # Tests images whose texels are in the pipeline file itself: every shape, any binding, and mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: texel_test.py GLINT SOURCE_DIR"""
+import struct
+
 import glint_case
 from glint_case import GlintTest
 
@@ -172,6 +174,18 @@ class Texels(GlintTest):
         self.assertEqual(self.glint("init", "new.toml", "integers.comp").returncode, 0)
         self.assertEqual((self.folder / "new.toml").read_text().count('filter = "nearest"'), 2)
         self.expect(0, [], "run", "new.toml", "--mode", "functional", "--out", "new")
+
+    def test_images_of_integers_are_saved_as_integers_with_all_their_bits(self):
+        self.write("integers.comp", INTEGERS)
+        text = INTEGERS_FILE.replace("[1, 2, 3, 4, 5, 6, 7, 8]", '[4294967295, 16777217, 3, 4, 5, 6, 7, 8]\nsave = ["u.csv", "u.npy"]').replace(
+            "data = [-1, 2, 3, -4]", 'data = [-1, 2, 3, -4]\nsave = ["s.csv", "s.npy"]')
+        self.run_text(0, [], text)
+        self.assertEqual((self.folder / "out/u.csv").read_text(), "x,y,red,green,blue,alpha\n0,0,4294967295,16777217,3,4\n1,0,5,6,7,8\n")
+        self.assertEqual((self.folder / "out/s.csv").read_text(), "x,y,red,green,blue,alpha\n0,0,-1,2,0,1\n1,0,3,-4,0,1\n")
+        for name, kind, numbers in (("u", "<u4", (2**32 - 1, 2**24 + 1, 3, 4, 5, 6, 7, 8)), ("s", "<i4", (-1, 2, 0, 1, 3, -4, 0, 1))):
+            data = (self.folder / f"out/{name}.npy").read_bytes()
+            self.assertIn(f"'descr': '{kind}', 'fortran_order': False, 'shape': (1, 2, 4)".encode(), data)
+            self.assertEqual(struct.unpack("<8I" if kind == "<u4" else "<8i", data[-32:]), numbers)
 
     def test_files_that_the_run_writes_itself_or_that_are_saved_twice_are_refused(self):
         self.refused('"out.csv"', '"stats.csv"', "p.toml:", "the run itself writes 'stats.csv'")

@@ -51,6 +51,27 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+// Returns an image as numbers of its own kind: floats, or integers, of which floats would lose bits.
+std::string numbers_file(const std::string& ending, const exec::ImageView& view, uint32_t rows,
+                         std::span<const std::byte> bytes) {
+  const std::vector<uint32_t> words = pipeline::texels_as_words(view, bytes.data());
+  const exec::Numeric numeric = exec::info_of(view.format).numeric;
+  const char kind = numeric == exec::Numeric::Uint ? 'u' : numeric == exec::Numeric::Sint ? 's' : 'f';
+  const std::string_view all = text_of(std::as_bytes(std::span(words)));
+  if (ending == ".npy")
+    return report::npy_bytes(fmt::format("<{}4", kind == 's' ? 'i' : kind),
+                             fmt::format("({}, {}, 4)", rows, view.width), all);
+  std::string out = "x,y,red,green,blue,alpha\n";
+  const std::string type = fmt::format("{}32", kind);
+  for (size_t i = 0; i + 4 <= words.size(); i += 4) {
+    out += fmt::format("{},{}", i / 4 % view.width, i / 4 / view.width);
+    for (size_t c = 0; c < 4; ++c)
+      out += "," + element_text(type, std::as_bytes(std::span(&words[i + c], 1)).data());
+    out += "\n";
+  }
+  return out;
+}
+
 std::string ending_of(const std::string& file) {
   return std::filesystem::path(file).extension().string();
 }
@@ -95,19 +116,12 @@ std::string image_file(const std::string& file, const exec::ImageView& view,
   const std::string ending = ending_of(file);
   if (ending != ".png" && ending != ".pfm" && ending != ".exr" && ending != ".npy" && ending != ".csv")
     return std::string(text_of(bytes));
-  const std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
   const uint32_t rows = view.height * view.depth * view.layers;
+  if (ending == ".npy" || ending == ".csv") return numbers_file(ending, view, rows, bytes);
+  const std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
   if (ending == ".png") return pictures::png_bytes({view.width, rows, texels});
   if (ending == ".pfm") return pictures::pfm_bytes({view.width, rows, texels});
-  if (ending == ".exr") return pictures::exr_bytes({view.width, rows, texels});
-  if (ending == ".npy")
-    return report::npy_bytes("<f4", fmt::format("({}, {}, 4)", rows, view.width),
-                             text_of(std::as_bytes(std::span(texels))));
-  std::string out = "x,y,red,green,blue,alpha\n";
-  for (size_t i = 0; i + 4 <= texels.size(); i += 4)
-    out += fmt::format("{},{},{},{},{},{}\n", i / 4 % view.width, i / 4 / view.width, texels[i],
-                       texels[i + 1], texels[i + 2], texels[i + 3]);
-  return out;
+  return pictures::exr_bytes({view.width, rows, texels});
 }
 
 }  // namespace glint::app
