@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <initializer_list>
 #include <mutex>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include "base/block_hash.h"
@@ -19,18 +21,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Stands at the beginning of a file. The key follows it, then the head of the value, and at a multiple of
+// kPage its rest and FileStore::kRestSlack zeros. A value without a rest ends with its head.
 struct Header {
-  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '2'};
-  uint64_t key_bytes = 0, value_bytes = 0, hash = 0;  // `hash` covers key and value
+  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '3'};
+  uint64_t key_bytes = 0, head_bytes = 0, rest_bytes = 0;
+  uint64_t hash = 0;  // of all that follows the header, but for what fills the head's last page
+
+  // Return where the parts of the file are. Sums of sizes that a damaged file has may wrap around; a file
+  // with such sizes does not have the length that they ask for.
+  uint64_t head_at() const { return sizeof *this + key_bytes; }
+  uint64_t rest_at() const { return (head_at() + head_bytes + kPage - 1) / kPage * kPage; }
+  uint64_t file_bytes() const {
+    return rest_bytes ? rest_at() + rest_bytes + FileStore::kRestSlack : head_at() + head_bytes;
+  }
+
+  static constexpr uint64_t kPage = 4096;
 };
 
-Header header_of(const std::string& key, std::string_view head, std::string_view rest) {
-  Header header;
-  header.key_bytes = key.size(), header.value_bytes = head.size() + rest.size();
+uint64_t hash_of(std::initializer_list<std::string_view> parts) {
   BlockHash hash;
-  for (const std::string_view part : {std::string_view(key), head, rest}) hash.add(part);
-  header.hash = hash.first();
-  return header;
+  for (const std::string_view part : parts) hash.add(part);
+  return hash.first();
 }
 
 // Removes the oldest files with this ending until the folder holds at most `max_bytes` of such files.
@@ -82,46 +94,61 @@ std::string FileStore::file_of(const std::string& key) const {
                      options_.ending);
 }
 
-std::optional<std::string> FileStore::find(const std::string& key) {
-  std::string value;
-  const auto room = [&](uint64_t bytes) {
-    value.resize(bytes);
-    return value.data();
-  };
-  if (!find(key, {}, room)) return std::nullopt;
-  return value;
-}
+// Is what a file of the store says. The views lie in its pages.
+struct FileStore::Found {
+  std::string_view key, head;
+  Rest rest;
 
-bool FileStore::find(const std::string& given, std::span<char> head, const Room& room) {
-  if (options_.folder.empty()) return false;
-  const std::string path = file_of(given), key = options_.build + '\0' + given;
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) return false;
-  const auto bytes = uint64_t(in.tellg());
-  in.seekg(0);
-  Header header;
-  const bool begins = bytes >= sizeof header && in.read(reinterpret_cast<char*>(&header), sizeof header) &&
-                      std::memcmp(header.magic, Header{}.magic, sizeof header.magic) == 0;
-  const uint64_t after = bytes - std::min<uint64_t>(bytes, sizeof header);
-  if (!begins || header.key_bytes > after || header.value_bytes != after - header.key_bytes ||
-      header.value_bytes < head.size()) {
-    ++damaged_;
-    return false;
+  // Returns nullopt when the file is damaged.
+  static std::optional<Found> in(Pages pages) {
+    char* const bytes = static_cast<char*>(pages.get());
+    const size_t size = pages.get_deleter().bytes;
+    Header header;
+    if (size < sizeof header) return std::nullopt;
+    std::memcpy(&header, bytes, sizeof header);
+    const bool is_whole = std::memcmp(header.magic, Header{}.magic, sizeof header.magic) == 0 &&
+                          std::max({header.key_bytes, header.head_bytes, header.rest_bytes}) <= size &&
+                          header.file_bytes() == size;
+    if (!is_whole) return std::nullopt;
+    Found found{{bytes + sizeof header, header.key_bytes}, {bytes + header.head_at(), header.head_bytes}, {}};
+    std::string_view rest, slack;
+    if (header.rest_bytes) {
+      found.rest.data = bytes + header.rest_at(), found.rest.bytes = header.rest_bytes;
+      rest = {found.rest.data, header.rest_bytes}, slack = {rest.end(), kRestSlack};
+    }
+    found.rest.pages = std::move(pages);
+    if (hash_of({found.key, found.head, rest, slack}) != header.hash) return std::nullopt;
+    return found;
   }
-  std::string found_key(header.key_bytes, 0);
-  const uint64_t left = header.value_bytes - head.size();
-  char* const rest = room(left);
-  in.read(found_key.data(), std::streamsize(found_key.size()));
-  in.read(head.data(), std::streamsize(head.size()));
-  in.read(rest, std::streamsize(left));
-  if (!in || header_of(found_key, {head.data(), head.size()}, {rest, left}).hash != header.hash) {
+};
+
+std::optional<FileStore::Found> FileStore::open(const std::string& given) {
+  if (options_.folder.empty()) return std::nullopt;
+  const std::string path = file_of(given);
+  std::optional<Pages> pages = pages_of_file(path);
+  if (!pages) return std::nullopt;
+  std::optional<Found> found = Found::in(std::move(*pages));
+  if (!found) {
     ++damaged_;
-    return false;
+    return std::nullopt;
   }
-  if (found_key != key) return false;
+  if (found->key != options_.build + '\0' + given) return std::nullopt;
   std::error_code failed;
   fs::last_write_time(path, fs::file_time_type::clock::now(), failed);
-  return true;
+  return found;
+}
+
+std::optional<std::string> FileStore::find(const std::string& key) {
+  const std::optional<Found> found = open(key);
+  if (!found || found->rest.bytes) return std::nullopt;
+  return std::string(found->head);
+}
+
+std::optional<FileStore::Rest> FileStore::find(const std::string& key, std::span<char> head) {
+  std::optional<Found> found = open(key);
+  if (!found || found->head.size() != head.size()) return std::nullopt;
+  std::copy(found->head.begin(), found->head.end(), head.begin());
+  return std::move(found->rest);
 }
 
 void FileStore::store(const std::string& given, std::string_view head, std::string_view rest) {
@@ -131,11 +158,16 @@ void FileStore::store(const std::string& given, std::string_view head, std::stri
   const std::string path = file_of(given), key = options_.build + '\0' + given;
   const std::string temporary =
       fmt::format("{}.{}.{:x}.{}", path, ::getpid(), reinterpret_cast<uintptr_t>(this), num_temporaries_++);
+  Header header;
+  header.key_bytes = key.size(), header.head_bytes = head.size(), header.rest_bytes = rest.size();
+  const std::string slack(rest.empty() ? 0 : kRestSlack, 0);
+  header.hash = hash_of({key, head, rest, slack});
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    const Header header = header_of(key, head, rest);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    out << key << head << rest;
+    out << key << head;
+    if (!rest.empty())
+      out << std::string(header.rest_at() - header.head_at() - head.size(), 0) << rest << slack;
     out.flush();
     if (!out) {
       out.close();
@@ -145,7 +177,7 @@ void FileStore::store(const std::string& given, std::string_view head, std::stri
   }
   fs::rename(temporary, path, failed);
   if (failed) fs::remove(temporary, failed);
-  sweep(key.size() + head.size() + rest.size());
+  sweep(header.file_bytes());
 }
 
 // Limits the size of the folder. The folder is only searched from time to time, so it may exceed its limit by

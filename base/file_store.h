@@ -4,13 +4,14 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include "base/file_pages.h"
 
 namespace glint {
 
@@ -37,20 +38,26 @@ class FileStore {
 
   // Returns the value of a key, if there is one.
   std::optional<std::string> find(const std::string& key);
-  void store(const std::string& key, std::string_view value) { store(key, {}, value); }
+  void store(const std::string& key, std::string_view value) { store(key, value, {}); }
 
-  // Gives room for the rest of a value, which has this number of bytes.
-  using Room = std::function<char*(uint64_t bytes)>;
-  // Finds a large value without a copy of it: its first bytes go to `head`, and the rest goes where `room`
-  // says. Returns whether there is such a value; otherwise the bytes mean nothing, and `room` may have been
-  // called all the same.
-  bool find(const std::string& key, std::span<char> head, const Room& room);
+  // Is a large part of a value, in pages that belong to this process.
+  struct Rest {
+    Pages pages;
+    char* data = nullptr;  // in `pages`, at an address that is a multiple of 4096
+    uint64_t bytes = 0;    // kRestSlack more can be read behind them
+  };
+  static constexpr uint64_t kRestSlack = 128;
+  // Finds a large value without copying it: its first bytes go to `head`, and the rest stays in the pages of
+  // its file. When there is no such value, nullopt comes back and `head` means nothing.
+  std::optional<Rest> find(const std::string& key, std::span<char> head);
   // Stores the value that consists of the two.
   void store(const std::string& key, std::string_view head, std::string_view rest);
   std::string file_of(const std::string& key) const;
   uint64_t damaged() const { return damaged_; }  // number of damaged files that find() met
 
  private:
+  struct Found;
+  std::optional<Found> open(const std::string& key);
   void sweep(uint64_t written);
 
   const Options options_;

@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/file_pages.h"
+
 namespace glint::mem {
 
 // Frees memory of std::malloc, or `mapped` bytes of pages.
@@ -17,7 +19,7 @@ struct FreeHostMemory {
   size_t mapped = 0;
   void operator()(void* memory) const {
     if (mapped)
-      munmap(memory, mapped);
+      FreePages{mapped}(memory);
     else
       std::free(memory);
   }
@@ -28,10 +30,10 @@ struct FreeHostMemory {
 // block is never touched.
 enum class Filling : uint8_t { Whole, Sparse };
 
-// Holds bytes that are 0 at first and aligned to 64 bytes. The host gives a page of a large block when the
-// page is first touched, so that the threads that fill a block also share the cost of its pages, and pages
-// that nobody touches cost nothing. A moved block is empty. Throws std::bad_alloc when the host has no
-// memory.
+// Holds bytes that are aligned to 64 bytes, and 0 at first unless they come from elsewhere. The host gives a
+// page of a large block when the page is first touched, so that the threads that fill a block also share the
+// cost of its pages, and pages that nobody touches cost nothing. A moved block is empty. Throws
+// std::bad_alloc when the host has no memory.
 class HostBlock {
  public:
   static constexpr uint64_t kAlignment = 64;
@@ -44,6 +46,12 @@ class HostBlock {
     if (!memory_) throw std::bad_alloc();
     const auto at = reinterpret_cast<uintptr_t>(memory_.get());
     data_ = static_cast<std::byte*>(memory_.get()) + (kAlignment - at % kAlignment) % kAlignment;
+  }
+  // Takes over pages that hold `bytes` bytes from `data` on, which is aligned, and at least 2 * kAlignment
+  // more.
+  HostBlock(Pages pages, std::byte* data, uint64_t bytes) : data_(data), size_(bytes) {
+    const size_t mapped = pages.get_deleter().bytes;
+    memory_ = Memory(pages.release(), FreeHostMemory{mapped});
   }
   HostBlock(HostBlock&& other) noexcept
       : memory_(std::move(other.memory_)),

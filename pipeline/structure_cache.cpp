@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <fmt/format.h>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "base/block_hash.h"
 
@@ -63,11 +65,10 @@ rt::EncodedStructure StructureCache::encode(const std::string& name, const rt::B
   const Turn turn(*this, key);
   rt::EncodedStructure out;
   const std::span<char> info(reinterpret_cast<char*>(&out.info), sizeof out.info);
-  const auto room = [&](uint64_t bytes) {
-    out.bytes = mem::HostBlock(bytes);
-    return reinterpret_cast<char*>(out.bytes.data());
-  };
-  if (files_.find(key, info, room)) {
+  static_assert(FileStore::kRestSlack >= 2 * mem::HostBlock::kAlignment);
+  if (std::optional<FileStore::Rest> found = files_.find(key, info)) {
+    out.bytes =
+        mem::HostBlock(std::move(found->pages), reinterpret_cast<std::byte*>(found->data), found->bytes);
     count(&Counts::found);
     return out;
   }
