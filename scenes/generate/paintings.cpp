@@ -3,7 +3,9 @@
 #include "scenes/generate/paintings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <vector>
 
@@ -20,10 +22,22 @@ uint8_t unorm(float value) {
   return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
 }
 
-float grain(uint32_t x, uint32_t y, uint32_t seed) {
+// Returns which of kGrains the texel has.
+constexpr uint32_t kGrains = 256;
+uint32_t grain(uint32_t x, uint32_t y, uint32_t seed) {
   uint32_t h = x * 0x8da6b343u ^ y * 0xd8163841u ^ seed * 0xcb1ab31fu;
   h = (h ^ h >> 15) * 0x2c1b3c6du;
-  return float((h ^ h >> 13) & 255) / 255;
+  return (h ^ h >> 13) % kGrains;
+}
+
+// Returns the brightness of a grain.
+float brightness(uint32_t grain) {
+  return 0.92f + 0.08f * (float(grain) / (kGrains - 1));
+}
+
+using Texel = std::array<uint8_t, 4>;
+Texel texel_of(const Vec3& color, float light) {
+  return {unorm(color[0] * light), unorm(color[1] * light), unorm(color[2] * light), 255};
 }
 
 // Returns the brightness of a wall of `rows` rows of bricks, in which every other row is moved by half a
@@ -68,21 +82,35 @@ float leaf_depth(float u, float v) {
   return depth;
 }
 
-// Paints rows `begin` to `end` of a texture, which share their smooth noise.
-void paint_rows(Texture& texture, uint32_t begin, uint32_t end, Pattern pattern, const Vec3& color,
-                uint32_t seed) {
-  std::vector<float> smooth(texture.width / kTile + 1, 1.0f);
-  if (pattern != Pattern::Lacquer)
-    for (uint32_t x = 0; x < smooth.size(); ++x)
-      smooth[x] = 1 + 0.4f * fractal({float(x) * 0.05f, float(begin / kTile) * 0.05f, float(seed) * 3.3f}, 2);
+// Writes texel_at(x, y) to each texel of rows `begin` to `end`.
+template <class TexelAt>
+void paint_rows(Texture& texture, uint32_t begin, uint32_t end, const TexelAt& texel_at) {
+  uint8_t* out = &texture.rgba[4 * size_t(begin) * texture.width];
   for (uint32_t y = begin; y < end; ++y)
-    for (uint32_t x = 0; x < texture.width; ++x) {
-      const float u = float(x) / float(texture.width), v = float(y) / float(texture.height);
-      const float light = shade(pattern, u, v) * smooth[x / kTile] * (0.92f + 0.08f * grain(x, y, seed));
-      uint8_t* texel = &texture.rgba[4 * (size_t(y) * texture.width + x)];
-      for (size_t c = 0; c < 3; ++c) texel[c] = unorm(color[c] * light);
-      texel[3] = 255;
+    for (uint32_t x = 0; x < texture.width; ++x, out += sizeof(Texel)) {
+      const Texel texel = texel_at(x, y);
+      std::memcpy(out, texel.data(), sizeof texel);
     }
+}
+
+// Paints rows `begin` to `end` of a texture with lacquer, which has grains alone.
+void paint_lacquer(Texture& texture, uint32_t begin, uint32_t end, const Vec3& color, uint32_t seed) {
+  std::array<Texel, kGrains> texels;
+  for (uint32_t i = 0; i < kGrains; ++i) texels[i] = texel_of(color, brightness(i));
+  paint_rows(texture, begin, end, [&](uint32_t x, uint32_t y) { return texels[grain(x, y, seed)]; });
+}
+
+// Paints rows `begin` to `end` of a texture, which share their smooth noise.
+void paint_tiles(Texture& texture, uint32_t begin, uint32_t end, Pattern pattern, const Vec3& color,
+                 uint32_t seed) {
+  std::vector<float> smooth;
+  for (uint32_t x = 0; x <= texture.width / kTile; ++x)
+    smooth.push_back(1 +
+                     0.4f * fractal({float(x) * 0.05f, float(begin / kTile) * 0.05f, float(seed) * 3.3f}, 2));
+  paint_rows(texture, begin, end, [&](uint32_t x, uint32_t y) {
+    const float u = float(x) / float(texture.width), v = float(y) / float(texture.height);
+    return texel_of(color, shade(pattern, u, v) * smooth[x / kTile] * brightness(grain(x, y, seed)));
+  });
 }
 
 }  // namespace
@@ -91,9 +119,14 @@ Texture paint_texture(Pattern pattern, const Vec3& color, uint32_t width, uint32
                       uint32_t threads) {
   Texture texture{fmt::format("painted_{}", seed), width, height, {}};
   texture.rgba.resize(4 * size_t(width) * height);
-  parallel_ranges(height, kTile, threads, [&](size_t begin, size_t end) {
-    paint_rows(texture, uint32_t(begin), uint32_t(end), pattern, color, seed);
-  });
+  if (pattern == Pattern::Lacquer)
+    parallel_ranges(height, 256, threads, [&](size_t begin, size_t end) {
+      paint_lacquer(texture, uint32_t(begin), uint32_t(end), color, seed);
+    });
+  else
+    parallel_ranges(height, kTile, threads, [&](size_t begin, size_t end) {
+      paint_tiles(texture, uint32_t(begin), uint32_t(end), pattern, color, seed);
+    });
   return texture;
 }
 
