@@ -1,6 +1,7 @@
 // Interface: takes the requests of a core's units to the L1 data cache and gives their answers back.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -20,6 +21,7 @@ enum class Client : uint8_t { Lsu, RtUnit, Code, Count };
 //  - Every accepted read gives its token back exactly once: a hit after exactly the hit latency, any other
 //    read when its last sector has arrived. Writes and prefetches give nothing back.
 //  - Reads of instructions and constants take no port and no bank, and their lines are not kept.
+//  - A port that calls neither set_due() nor set_input() is due in every cycle.
 //  - The tokens of one client come back in the order in which they are ready; of tokens ready in the same
 //    cycle, the one that was accepted first comes first.
 class L1Port {
@@ -35,6 +37,10 @@ class L1Port {
   }
   // Does the same for an answer that has come.
   virtual Token take_answer(Client client) = 0;
+  // Returns whether tick() may have something to do. It is no virtual call, because the core asks in every
+  // cycle.
+  bool is_due(Cycle now) const { return std::min(due_, *input_at_) <= now; }
+  // Advances to `now`. The core calls it in every cycle in which is_due() holds.
   virtual void tick(Cycle now) = 0;
   virtual Cycle next_event(Cycle now) const = 0;  // is kNever when nothing is in flight
   virtual uint32_t line_bytes() const = 0;
@@ -51,6 +57,10 @@ class L1Port {
   // Return and note when the client's first answer comes. With kNever, none is known.
   Cycle answer_at(Client client) const { return (*answers_at_)[size_t(client)]; }
   void set_answer_at(Client client, Cycle at) { own_answers_at_[size_t(client)] = at; }
+  // Sets the first cycle with work of the port's own, and the place that tells when input comes. The latter
+  // outlives the port.
+  void set_due(Cycle due) { due_ = due; }
+  void set_input(const Cycle& at) { input_at_ = &at; }
   // Lets the answers of `other`, which outlives this port, be those of this port.
   void share_answers(const L1Port& other) { answers_at_ = other.answers_at_; }
 
@@ -58,6 +68,9 @@ class L1Port {
   using Times = std::array<Cycle, size_t(Client::Count)>;  // by client
   Times own_answers_at_;
   const Times* answers_at_ = &own_answers_at_;
+  Cycle due_ = 0;
+  static constexpr Cycle kNoInput = kNever;
+  const Cycle* input_at_ = &kNoInput;
 };
 
 }  // namespace glint::mem

@@ -20,6 +20,7 @@ namespace glint::rt {
 //  - Exactly one completion comes back for each submit, at a later cycle.
 //  - The unit calls set_room() and set_completion() whenever the answer of can_accept() or has_completion()
 //    changes. has_completion() may hold while no warp comes back, but not the other way round.
+//  - A unit that never calls set_due() is due in every cycle.
 //  - A warp that needs shaders is given back whole. The core runs them, decides the candidates
 //    (accept_candidate() and the others of traversal.h) and submits the lanes that still traverse again.
 class RtPort {
@@ -33,7 +34,10 @@ class RtPort {
   bool has_completion() const { return has_completion_; }
   // Returns a warp slot whose rays have all stopped by `now`, if there is one; each is returned once.
   virtual std::optional<uint32_t> pop_completion(Cycle now) = 0;
-  // Advances to `now`. The core calls it in every cycle that it does not skip.
+  // Returns whether tick() may have something to do, unless the L1 has an answer. It is no virtual call,
+  // because the core asks in every cycle.
+  bool is_due(Cycle now) const { return due_ <= now; }
+  // Advances to `now`. The core calls it in every cycle in which is_due() holds or the L1 has an answer.
   virtual void tick(Cycle now) = 0;
   // Returns the earliest cycle after `now` in which tick() can do anything without new input, or kNever when
   // the unit is idle.
@@ -48,9 +52,13 @@ class RtPort {
   RtPort& operator=(const RtPort&) = delete;
   void set_room(bool has_room) { has_room_ = has_room; }
   void set_completion(bool has_completion) { has_completion_ = has_completion; }
+  // Sets and returns the first cycle with work of the unit's own.
+  void set_due(Cycle due) { due_ = due; }
+  Cycle due() const { return due_; }
 
  private:
   bool has_room_ = false, has_completion_ = false;
+  Cycle due_ = 0;
 };
 
 }  // namespace glint::rt

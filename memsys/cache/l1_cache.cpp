@@ -27,6 +27,8 @@ L1Cache::L1Cache(const Params& params, uint16_t core, const PartitionMap& map, C
       prefetched_(tags_.num_lines(), params_.mshr_entries, stats_.prefetch),
       seen_(line_bytes_),
       miss_queue_(params_.miss_queue) {
+  set_input(port_.arrival());
+  find_due();
 }
 
 bool L1Cache::refuse(Refusal reason) {
@@ -211,6 +213,7 @@ bool L1Cache::write_back(Cycle now, const Request& request) {
 
 void L1Cache::queue_packet(Cycle ready, const Packet& packet) {
   // The write-back of a fill is ready at once, but it may not overtake packets: the queue keeps its order.
+  if (miss_queue_.empty() && !port_.has_credits()) set_due(ready);
   miss_queue_.push({ready, packet});
   miss_queue_.back().packet.core = core_;
   miss_queue_.back().packet.slice = uint16_t(map_.slice(packet.line));
@@ -263,11 +266,16 @@ Cycle L1Cache::next_fill() const {
   return std::max(port_.received(), fill_not_before_);
 }
 
+// Finds when a packet may leave. With credits, the port looks for itself in every cycle.
+void L1Cache::find_due() {
+  set_due(port_.has_credits() ? 0 : miss_queue_.empty() ? kNever : miss_queue_.front().ready);
+}
+
 void L1Cache::run(Cycle now) {
   port_.take_credits(now);
   for (;;) {
     const Cycle departure = next_departure(), arrival = next_fill();
-    if (std::min(departure, arrival) > now) return;
+    if (std::min(departure, arrival) > now) return find_due();
     if (departure <= arrival) {  // departures go first: the entry that one frees can take a write-back
       send_front(departure);
     } else if (!fill(arrival)) {

@@ -137,6 +137,7 @@ class L1Cache final : public L1Port {
     return std::min(port_.arrival(), port_.next_credit()) <= now ||
            (!miss_queue_.empty() && miss_queue_.front().ready <= now);
   }
+  void find_due();
   void run(Cycle now);
   void answer(Client client, bool is_hit, const Completion& completion);
   bool refuse(Refusal reason);

@@ -25,7 +25,8 @@ class FanIn final : public ChannelBase {
   }
 
   bool ready(Cycle now) const { return arrival() <= now; }
-  Cycle arrival() const { return arrival_; }
+  // Returns when the first message comes, or kNever. The reference stays valid as long as the channel.
+  const Cycle& arrival() const { return arrival_; }
   const Message& front() const { return inbox_[head_].message; }
   void pop() {
     ++head_;

@@ -73,6 +73,7 @@ class NetworkPort {
       ++credits_[wiring_.credit_inbox->front().allowance];
     }
   }
+  bool has_credits() const { return wiring_.credit_inbox != nullptr; }
   Cycle next_credit() const {
     if (wiring_.credit_inbox) [[unlikely]]
       return wiring_.credit_inbox->arrival();
@@ -81,7 +82,7 @@ class NetworkPort {
 
   // Return, of the oldest message, the cycle in which its tail arrived, and the cycle in which the port has
   // received all of it. Both are kNever when there is no message.
-  Cycle arrival() const { return wiring_.inbox->arrival(); }
+  const Cycle& arrival() const { return wiring_.inbox->arrival(); }
   Cycle received() const {
     if (arrival() == kNever) return kNever;
     const uint32_t bytes = bytes_of(front());

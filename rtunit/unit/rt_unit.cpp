@@ -58,6 +58,9 @@ RtUnit::RtUnit(const Params& params, const Context& context)
       fetches_(params, context.memory, context.l1, buffer_, stats_),
       account_(stats_) {
   add_optional_parts(params, context);
+  has_parts_ = former_ || prefetches_ || sharing_ || shared_stacks_ || !sources_.empty() ||
+               !before_tests_.empty() || !after_requests_.empty();
+  set_due(kNever);
   tell_core();
 }
 
@@ -125,7 +128,7 @@ Part& RtUnit::add(Args&&... args) {
 
 void RtUnit::submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) {
   GLINT_CHECK(can_accept() && mask != 0, "warp {} submitted to a full RT unit or without rays", warp_slot);
-  due_ = 0;
+  set_due(0);  // The unit looks at the warp in its next cycle.
   ++stats_.warps;
   if (former_) {
     former_->accept(now, warp_slot, mask, states);
@@ -149,27 +152,33 @@ void RtUnit::tell_core() {
   set_completion(former_ || buffer_.has_completion());
 }
 
+template <bool kHasParts>
 void RtUnit::run(Cycle now) {
   buffer_.retire(now);
-  if (former_) [[unlikely]]
-    former_->form(now);
-  if (!before_tests_.empty()) [[unlikely]]
+  if constexpr (kHasParts) {
+    if (former_) former_->form(now);
     for (const auto& step : before_tests_) step(now);
+  }
   pipelines_.finish_tests(now);
   receive(now);
   pipelines_.start_tests(now);
-  if (sharing_) [[unlikely]]
-    sharing_->share(now);
-  const Stall reason = send_requests(now);
-  if (!after_requests_.empty()) [[unlikely]]
+  if constexpr (kHasParts)
+    if (sharing_) sharing_->share(now);
+  std::optional<Stall> reason = send_requests<kHasParts>(now);
+  if constexpr (kHasParts) {
+    if (!reason) reason = idle_reason();
     for (const auto& step : after_requests_) step(now);
-  account_.account(now, reason, idle_reason(), {buffer_.num_resident(), buffer_.num_rays()});
-  due_ = buffer_.take_opened() ? now + 1 : find_due(now);
+  }
+  const Stall idle = idle_reason();
+  account_.account(now, reason.value_or(idle), idle, {buffer_.num_resident(), buffer_.num_rays()});
+  set_due(buffer_.take_opened() ? now + 1 : find_due<kHasParts>(now));
   tell_core();
 }
+template void RtUnit::run<false>(Cycle);
+template void RtUnit::run<true>(Cycle);
 
 // Passes what has arrived to the pipelines. A part of a stack needs no test.
-void RtUnit::receive(Cycle now) {
+inline void RtUnit::receive(Cycle now) {
   fetches_.receive(now, [&](const Read& read, uint32_t slot, LaneMask lanes) {
     if (read.pipe == kNoPipe) [[unlikely]]
       for_each_lane(lanes, [&](int lane) { walk_.go_on(slot, lane, now); });
@@ -178,20 +187,31 @@ void RtUnit::receive(Cycle now) {
   });
 }
 
-// Sends as many requests as the port takes in a cycle.
-Stall RtUnit::send_requests(Cycle now) {
+// Sends as many requests as the port takes in a cycle. Returns the reason that this gives the cycle, or none
+// when there is nothing to send.
+template <bool kHasParts>
+inline std::optional<Stall> RtUnit::send_requests(Cycle now) {
   bool sent = false;
   for (uint32_t i = 0; i < requests_per_cycle_; ++i) {
-    RequestSource* source = next_source(now);
-    if (!source) break;
-    if (!source->send(now)) {
+    bool is_taken;
+    if constexpr (kHasParts) {
+      RequestSource* source = next_source(now);
+      if (!source) break;
+      is_taken = source->send(now);
+    } else {
+      if (!fetches_.has_request(now) && !fetches_.choose(now)) break;
+      is_taken = fetches_.send(now);
+    }
+    if (!is_taken) {
       ++stats_.refusals;
       return sent ? Stall::NodeRequest : Stall::L1Refused;
     }
     sent = true;
   }
   if (sent) return Stall::NodeRequest;
-  return prefetches_ && prefetches_->send(now) ? Stall::Prefetch : idle_reason();
+  if constexpr (kHasParts)
+    if (prefetches_ && prefetches_->send(now)) return Stall::Prefetch;
+  return std::nullopt;
 }
 
 // A node whose reading has begun is read to its end. Then writers come before new nodes, so that a finished
@@ -203,14 +223,15 @@ RequestSource* RtUnit::next_source(Cycle now) {
   return fetches_.choose(now) ? &fetches_ : nullptr;
 }
 
-Cycle RtUnit::find_due(Cycle now) const {
+template <bool kHasParts>
+inline Cycle RtUnit::find_due(Cycle now) const {
   if (buffer_.has_leaving_warps()) return now + 1;
   Cycle next = std::min(fetches_.next_event(now), pipelines_.next_event());
-  for (const RequestSource* source : sources_) next = std::min(next, source->next_event(now));
-  if (prefetches_) [[unlikely]]
-    next = std::min(next, prefetches_->next_event(now));
-  if (sharing_) [[unlikely]]
-    next = std::min(next, sharing_->next_event(now));
+  if constexpr (kHasParts) {
+    for (const RequestSource* source : sources_) next = std::min(next, source->next_event(now));
+    if (prefetches_) next = std::min(next, prefetches_->next_event(now));
+    if (sharing_) next = std::min(next, sharing_->next_event(now));
+  }
   return next == kNever ? next : std::max(next, now + 1);
 }
 

@@ -67,10 +67,10 @@ class RtUnit final : public RtPort {
   void submit(Cycle now, uint32_t warp_slot, LaneMask mask, RayState* states) override;
   std::optional<uint32_t> pop_completion(Cycle now) override;
   void tick(Cycle now) override {
-    if ((now >= due_) | l1_.has_answer(now, mem::Client::RtUnit)) run(now);
+    if (is_due(now) | l1_.has_answer(now, mem::Client::RtUnit)) has_parts_ ? run<true>(now) : run<false>(now);
   }
   // The L1's answers are new input, and the L1's next_event() tells of them.
-  Cycle next_event(Cycle now) const override { return due_ == kNever ? kNever : std::max(due_, now + 1); }
+  Cycle next_event(Cycle now) const override { return due() == kNever ? kNever : std::max(due(), now + 1); }
 
   std::string describe() const override;
 
@@ -105,13 +105,17 @@ class RtUnit final : public RtPort {
   template <class Part, class... Args>
   Part& add(Args&&... args);
 
+  // With `kHasParts` the unit has parts that not every configuration has.
+  template <bool kHasParts>
   void run(Cycle now);
   void receive(Cycle now);
-  Stall send_requests(Cycle now);
+  template <bool kHasParts>
+  std::optional<Stall> send_requests(Cycle now);
   RequestSource* next_source(Cycle now);
   bool has_reads_waiting() const;
   void tell_core();
   Stall idle_reason() const;
+  template <bool kHasParts>
   Cycle find_due(Cycle now) const;
 
   const uint32_t requests_per_cycle_;
@@ -129,9 +133,7 @@ class RtUnit final : public RtPort {
   StackMover* shared_stacks_ = nullptr;       // keeps parts of stacks in shared memory
   WorkSharing* sharing_ = nullptr;            // lets lanes help each other
   std::vector<std::function<void(Cycle)>> before_tests_, after_requests_;  // further steps of a cycle
-  // This is the first cycle with work of the unit's own, unless answers of the L1 come before. It is 0 when a
-  // warp was submitted since the last tick.
-  Cycle due_ = kNever;
+  bool has_parts_ = false;  // There is a part in one of the members above.
 };
 
 }  // namespace glint::rt

@@ -42,6 +42,8 @@ class MemoryRig {
   }
   void set_window(Cycle window) { window_ = window; }
   void set_step_every_cycle(bool step) { step_ = step; }
+  // Lets an L1 have its tick() only when it is due, as a core does.
+  void set_tick_when_due(bool when_due) { when_due_ = when_due; }
 
   // Is called for each core and cycle after tick(). Returns the next cycle at which it wants to be called, or
   // kNever when it is done.
@@ -97,7 +99,7 @@ class MemoryRig {
     for (Cycle now = from; now < until;) {
       if (!step_) now = std::max(now, std::min(wanted, l1.next_event(now)));
       if (now >= until) break;
-      l1.tick(now);
+      if (!when_due_ || l1.is_due(now)) l1.tick(now);
       collect(l1, core, now);
       if (wanted <= now) wanted = driver(core, now);
       collect(l1, core, now);  // what was answered at once
@@ -115,7 +117,7 @@ class MemoryRig {
   std::vector<Cell*> cells_;
   std::vector<ChannelBase*> channels_;
   Cycle window_ = 1, now_ = 0;
-  bool step_ = false;
+  bool step_ = false, when_due_ = false;
   std::vector<Answered> answers_;
 };
 

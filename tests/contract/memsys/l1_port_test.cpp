@@ -1,5 +1,6 @@
 // Tests the contract of L1Port, for the L1 cache and for the fixed-latency memory of the tests.
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstdint>
 #include <map>
 #include <random>
@@ -105,4 +106,21 @@ TEST_CASE("a refused request changes nothing: the same access later behaves as i
     return std::pair{rig.answers().back().at - start, rig.l1().stats().reads.total()};
   };
   CHECK(latency(true) == latency(false));
+}
+
+TEST_CASE("an L1 cache that is not due has nothing to do: without these ticks, all answers come as before") {
+  const auto credits = GENERATE(0u, 4u);
+  const auto answers = [&](bool when_due) {
+    Params params;
+    params.l1.size = 16 * 128;
+    params.l1.miss_queue = 3;
+    params.noc.credits = credits;
+    MemoryRig rig(params, 2);
+    rig.set_step_every_cycle(true);
+    rig.set_tick_when_due(when_due);
+    std::array<Mix, 2> mix;
+    rig.run([&](uint32_t core, Cycle now) { return mix[core].step(rig.l1(core), now); });
+    return rig.answers();
+  };
+  CHECK(answers(true) == answers(false));
 }
