@@ -13,6 +13,8 @@ class Probe {
   using Listener = std::function<void(const Event&)>;
   void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
 
+  bool has_listeners() const { return !listeners_.empty(); }
+
   template <class Make>
   // `make` builds the event and runs only when somebody listens.
   void fire(Make&& make) const {

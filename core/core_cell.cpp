@@ -95,6 +95,7 @@ void CoreCell::launch(Cycle now, uint32_t block_index, Cycle ready) {
   const uint32_t num_warps = executor_.warps_per_block();
   BlockSlot& home = warps_.blocks().take(num_warps);
   executor_.start(home.block, block_index);
+  issue_.start_block();
   ++counts_.stats.blocks;
   for (uint32_t w = 0; w < num_warps; ++w) launch_warp(home, w, ready, now);
   count_residents(now);
@@ -146,14 +147,19 @@ Cycle CoreCell::next_event(Cycle from) const {
 
 void CoreCell::step(Cycle now) {
   sampler_.reach(now);
-  l1_.tick(now);
+  if (l1_.is_due(now)) l1_.tick(now);
   // Choice: the RT unit and the load-store unit alternate in who comes to the L1 first, so that neither
-  // starves the other. The order does not matter while the load-store unit has nothing to do, which is
-  // mostly the case.
-  const bool lsu_first = (now & 1) == 0 && lsu_.is_due(now);
-  if (lsu_first) lsu_.tick(now);
-  rt_.tick(now);
-  if (!lsu_first) lsu_.tick(now);
+  // starves the other. The order does not matter while one of them has nothing to do, which is mostly the
+  // case.
+  const bool lsu_is_due = lsu_.is_due(now);
+  const bool rt_is_due = rt_.is_due(now) | l1_.has_answer(now, mem::Client::RtUnit);
+  if (lsu_is_due && rt_is_due && (now & 1) == 0) {
+    lsu_.tick(now);
+    rt_.tick(now);
+  } else {
+    if (rt_is_due) rt_.tick(now);
+    if (lsu_is_due) lsu_.tick(now);
+  }
   if (code_) [[unlikely]]
     code_->tick(now, warps_, constants_);
   if (residents_ == 0) return;  // An empty core's time has a reason already, and nothing can issue.
@@ -171,17 +177,13 @@ void CoreCell::step(Cycle now) {
   }
 }
 
-// Gives each scheduler that has something to do its turn. An issue may wake schedulers that come later.
+// Gives each scheduler that has something to do its turn.
 void CoreCell::issue(Cycle now) {
   const Alarms& alarms = warps_.alarms();
   uint32_t due = no_skip_ ? (1u << params_.schedulers) - 1 : alarms.due(now);
   if (alarms.watching() & ~due) [[unlikely]]
     due |= find_open_doors(alarms.watching() & ~due);
-  for (uint32_t left = ~0u; due != 0 && !fault(); due = (due | alarms.awake()) & left) {
-    const auto s = uint32_t(std::countr_zero(due));
-    left = ~0u << s << 1;
-    issue_.run(warps_.schedulers()[s], now);
-  }
+  issue_.run(due, now);
 }
 
 // Returns those of the schedulers whose doors may have opened.

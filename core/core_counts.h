@@ -44,6 +44,16 @@ class CoreCounts {
     if (row.is_conditional) [[unlikely]]
       stats.divergent_branches += issued.lanes != 0 && issued.lanes != issued.active;
   }
+  // Counts an instruction that took `duration` cycles, where nobody has asked for a profile and it is no
+  // branch.
+  void issue_value(uint32_t pc, uint64_t lanes, uint64_t duration) {
+    ++progress;
+    ++stats.instructions;
+    ByPc& counts = by_pc_[pc];
+    ++counts.issues;
+    counts.lanes += lanes;
+    counts.cycles += duration;
+  }
   // Counts that the instruction at `pc` took `duration` cycles from its issue to its completion.
   void end(uint32_t pc, uint64_t duration) { by_pc_[pc].cycles += duration; }
   // Brings the counts of the instruction at `pc` near to the host's core.

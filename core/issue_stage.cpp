@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/check.h"
 #include "core/barrier_unit.h"
 #include "core/constant_port.h"
 #include "core/memory_accesses.h"
@@ -140,7 +141,7 @@ inline void IssueStage::prepare_next(WarpSlot& at, Cycle now) {
   core_.warps.refresh(at, now);
 }
 
-inline void IssueStage::issue(uint32_t slot, Cycle now) {
+void IssueStage::issue(uint32_t slot, Cycle now) {
   if (!core_.observers.empty()) [[unlikely]]
     tell_select(slot, now);
   WarpSlot& at = core_.warps[slot];
@@ -170,7 +171,42 @@ inline void IssueStage::issue(uint32_t slot, Cycle now) {
     prepare_next(at, now);
 }
 
-void IssueStage::run(Scheduler& scheduler, Cycle now) {
+void IssueStage::start_block() {
+  is_plain_ = core_.warps.is_plain() && core_.observers.empty() && !core_.counts.profile &&
+              !core_.params.register_file.banks && !core_.params.dispatch_latch &&
+              !core_.executor.has_clock();
+}
+
+// Does what issue() does, for an instruction that only computes values in a core of which is_plain_ holds.
+inline void IssueStage::issue_value(Scheduler& scheduler, uint32_t local, WarpSlot& at, const IssueRow& row,
+                                    Cycle now) {
+  const uint32_t pc = at.warp.simt.pc++;
+  const LaneMask lanes = core_.executor.lanes_at(at.warp, pc);
+  if (lanes != at.counted.mask) at.counted = {lanes, num_lanes(lanes)};
+  core_.counts.issue_value(pc, at.counted.lanes, row.latency);
+  scheduler.take(row.pipe, now, row.interval);
+  at.scoreboard.set_value(row, {now + row.latency, row.wait});
+  at.front = {now + 1, Stall::RawFixed};
+  core_.executor.prefetch(at.warp);
+  core_.counts.prefetch(at.warp.simt.pc);
+  core_.warps.go_on(scheduler, local, at);
+  // Choice: the values come last, because the host mispredicts the call of many handlers and does everything
+  // else meanwhile.
+  core_.executor.execute_value(at.warp, pc, lanes);
+  if (at.warp.instructions > core_.params.instruction_budget) [[unlikely]]
+    fault_ = no_end_in_sight(core_.world, at.warp, pc, core_.params.instruction_budget);
+}
+
+void IssueStage::run(uint32_t due, Cycle now) {
+  const Alarms& alarms = core_.warps.alarms();
+  for (uint32_t left = ~0u; due != 0 && !fault_; due = (due | alarms.awake()) & left) {
+    const auto s = uint32_t(std::countr_zero(due));
+    left = ~0u << s << 1;
+    run(core_.warps.schedulers()[s], now);
+  }
+}
+
+inline void IssueStage::run(Scheduler& scheduler, Cycle now) {
   core_.counts.spend(scheduler, now);
   uint64_t ready = scheduler.find_ready(now, doors_);
   if (core_.params.register_file.banks) [[unlikely]]
@@ -180,7 +216,14 @@ void IssueStage::run(Scheduler& scheduler, Cycle now) {
       core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));
     return;
   }
-  issue(slot_of(scheduler, scheduler.pick(ready, now, doors_)), now);
+  const uint32_t local = scheduler.pick(ready, now, doors_), slot = slot_of(scheduler, local);
+  WarpSlot& at = core_.warps[slot];
+  const IssueRow* const row = scheduler.row_of(local);
+  GLINT_DCHECK(!row || row == &core_.table.row(at.warp.simt.pc), "warp {} is not where it was", slot);
+  if (is_plain_ && row && row->is_value)
+    issue_value(scheduler, local, at, *row, now);
+  else
+    issue(slot, now);
 }
 
 // Tells observers of a selected warp. Model: a warp that is ready to go through a door counts as waiting for

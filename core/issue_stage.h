@@ -26,12 +26,17 @@ class IssueStage {
   IssueStage(const CoreParts& core, const Units& units, const Doors& doors)
       : core_(core), units_(units), doors_(doors) {}
 
-  // Gives this cycle of the scheduler to an instruction or to a reason.
-  void run(Scheduler& scheduler, Cycle now);
+  // Finds out what can be left out of each issue. It is called before warps of a block start.
+  void start_block();
+  // Gives this cycle of each scheduler in `due` (bit s: scheduler s) to an instruction or to a reason. An
+  // issue may wake schedulers that come later, and then these have their turns, too.
+  void run(uint32_t due, Cycle now);
   // Returns the first fault of a warp. The core does nothing from then on.
   const std::optional<exec::Fault>& fault() const { return fault_; }
 
  private:
+  void run(Scheduler& scheduler, Cycle now);
+  void issue_value(Scheduler& scheduler, uint32_t local, WarpSlot& at, const IssueRow& row, Cycle now);
   uint64_t leave_out_bank_conflicts(Scheduler& scheduler, uint64_t ready, Cycle now) const;
   void issue(uint32_t slot, Cycle now);
   void hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
@@ -50,6 +55,9 @@ class IssueStage {
   const Units units_;
   const Doors doors_;
   std::optional<exec::Fault> fault_;
+  // An instruction that only computes values changes nothing but its registers, its pipe and its counts:
+  // nobody listens, and the core has none of the parts that make more of it.
+  bool is_plain_ = false;
   SlowTime slow_;  // what the operands of the last whole instruction add to it
 };
 

@@ -90,6 +90,12 @@ bool counts_up(const isa::OpRow& op, const isa::Inst& inst, const exec::Image& i
          image.constants.get()[size_t(addend & isa::kSlotIndexMask) * kLanes] == 1;
 }
 
+bool is_value(const IssueRow& row, const isa::OpRow& op) {
+  return op.effect == Effect::None && row.finish == Finish::Fixed && row.pipe != Pipe::Memory &&
+         row.pipe != Pipe::Const && !row.is_sequence && !row.is_whole &&
+         row.num_uses <= IssueRow::kFirstUses && row.num_defs <= 1;
+}
+
 Door door_of(const IssueRow& row, const TextureParams& texture) {
   if (row.finish == Finish::Rays) return Door::RtUnit;
   if (row.finish != Finish::Memory && row.finish != Finish::CallRecord) return Door::None;
@@ -164,6 +170,7 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     row.merges_lanes = params.shared.merges_counts && counts_up(op, inst, image);
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
     row.door = door_of(row, params.texture);
+    row.is_value = is_value(row, op);
     rows_.push_back(row);
     if (params.register_file.banks) count_bank_reads(row, params.register_file);
   }

@@ -52,7 +52,10 @@ struct alignas(32) IssueRow {
   bool is_whole : 1 = false;        // OpTime::whole
   isa::AtomicKind atomic : 2 = isa::AtomicKind::Integer;
   SlowPath slow_path = SlowPath::None;
-  bool merges_lanes = false;  // lanes that meet in a word of shared memory take one turn
+  bool merges_lanes : 1 = false;  // lanes that meet in a word of shared memory take one turn
+  // The instruction does nothing but compute its values in a fixed time, reads at most kFirstUses registers
+  // and writes at most one. Most instructions do.
+  bool is_value : 1 = false;
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle
   // These are the first of the registers that have to be ready, and the first destination. Most instructions

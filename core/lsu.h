@@ -66,9 +66,13 @@ class Lsu {
   // Advances to `now`. Afterwards completed() holds the accesses that ended in this cycle, each once: reads
   // when their last line has come, and writes when the L1 has taken the last line.
   void tick(Cycle now) {
+    forget_news();
+    if (is_due(now)) run(now);
+  }
+  // Forgets completed() and accepted(), as the next tick() does.
+  void forget_news() {
     completed_.clear();
     num_accepted_ = 0;
-    if (is_due(now)) run(now);
   }
   // Returns whether tick() would do anything.
   bool is_due(Cycle now) const { return (now >= due_) | l1_.has_answer(now, mem::Client::Lsu); }

@@ -94,6 +94,7 @@ void MemoryAccesses::take_news(Cycle now) {
   if (holds_operands_)
     for (uint32_t id : lsu_.accepted()) read_operands(id, now);
   for (uint32_t id : lsu_.completed()) complete(id, now);
+  lsu_.forget_news();
 }
 
 // Notes that an access has left its queue. The unit reads its registers, and others may write them from then

@@ -33,6 +33,13 @@ class OperandWheel {
     if (at > now_) put_in(warp);
   }
 
+  // Does the same for a warp whose operands are not missing, when `at` is later than the last advance().
+  void put_back(uint32_t warp, Cycle at) {
+    at_[warp] = at;
+    missing_ |= uint64_t{1} << warp;
+    put_in(warp);
+  }
+
   // Goes on to cycle `now`, which may not be before that of the last call.
   void advance(Cycle now) {
     if (now - now_ == 1 && next_far_ == kNever) [[likely]]

@@ -8,11 +8,11 @@ namespace glint::core {
 
 Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params, Alarms& alarms)
     : index_(index),
+      has_latches_(params.dispatch_latch),
+      has_banks_(params.register_file.banks > 0),
       alarms_(alarms),
       policy_(params.issue.make({(slots + params.schedulers - 1) / params.schedulers})),
-      needs_rt_(policy_->needs_rt()),
-      has_latches_(params.dispatch_latch),
-      has_banks_(params.register_file.banks > 0) {
+      needs_rt_(policy_->needs_rt()) {
 }
 
 void Scheduler::add(uint32_t warp, uint64_t age) {
@@ -68,7 +68,8 @@ void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doo
 }
 
 NextIssue Scheduler::next_of(uint32_t warp) const {
-  return {operands_.at(warp), wait_[warp], pipe_[warp], door_[warp]};
+  const Needs& needs = needs_[warp];
+  return {operands_.at(warp), needs.wait, needs.pipe, needs.door, needs.row};
 }
 
 // Returns the reason that the scheduler would have if this warp were its only one.

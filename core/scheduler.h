@@ -28,6 +28,7 @@ struct NextIssue {
   Stall wait = Stall::RawFixed;  // what the instruction waits for until then
   Pipe pipe = Pipe::Int;
   Door door = Door::None;
+  const IssueRow* row = nullptr;  // null: it is the rest of a sequence
 };
 
 // Holds the units behind the doors, which say whether there is room.
@@ -71,18 +72,14 @@ class Scheduler {
   void add(uint32_t warp, uint64_t age);
   void remove(uint32_t warp);
   void set_next(uint32_t warp, const NextIssue& next) {
-    const uint64_t bit = uint64_t{1} << warp;
     operands_.set(warp, next.ready_at);
-    set_wait(warp, next.wait);
-    needs_pipe_[size_t(pipe_[warp])] &= ~bit;
-    needs_pipe_[size_t(next.pipe)] |= bit;
-    pipe_[warp] = next.pipe;
-    if (door_[warp] != next.door) [[unlikely]] {
-      needs_door_[size_t(door_[warp])] &= ~bit;
-      needs_door_[size_t(next.door)] |= bit;
-      door_[warp] = next.door;
-    }
+    set_needs(warp, next);
     wake();
+  }
+  // Does the same for the warp that was picked last, whose next instruction cannot issue in this cycle.
+  void go_on(uint32_t warp, const NextIssue& next) {
+    operands_.put_back(warp, next.ready_at);
+    set_needs(warp, next);
   }
   // Notes that the warp has ended and waits for its last accesses.
   void drain(uint32_t warp) {
@@ -162,6 +159,8 @@ class Scheduler {
   // Returns the number of cycles before `until` that no call has returned yet. All of them have reason().
   Cycle take_unaccounted(Cycle until) { return until - std::exchange(accounted_until_, until); }
   NextIssue next_of(uint32_t warp) const;
+  // Returns NextIssue::row of the warp.
+  const IssueRow* row_of(uint32_t warp) const { return needs_[warp].row; }
   // Returns the warp whose wait gave the scheduler its reason: the one that can go on first, or the oldest of
   // several. Returns none when the scheduler has no warps.
   std::optional<uint32_t> to_blame(Cycle now, const Doors& doors) const;
@@ -175,9 +174,24 @@ class Scheduler {
     alarms_.watch_nothing(index_);
   }
   void set_wait(uint32_t warp, Stall wait) {
-    waits_[size_t(wait_[warp])] &= ~(uint64_t{1} << warp);
+    waits_[size_t(needs_[warp].wait)] &= ~(uint64_t{1} << warp);
     waits_[size_t(wait)] |= uint64_t{1} << warp;
-    wait_[warp] = wait;
+    needs_[warp].wait = wait;
+  }
+  // Notes where the warp's next instruction goes, and what it waits for.
+  void set_needs(uint32_t warp, const NextIssue& next) {
+    const uint64_t bit = uint64_t{1} << warp;
+    Needs& needs = needs_[warp];
+    needs.row = next.row;
+    set_wait(warp, next.wait);
+    needs_pipe_[size_t(needs.pipe)] &= ~bit;
+    needs_pipe_[size_t(next.pipe)] |= bit;
+    needs.pipe = next.pipe;
+    if (needs.door != next.door) [[unlikely]] {
+      needs_door_[size_t(needs.door)] &= ~bit;
+      needs_door_[size_t(next.door)] |= bit;
+      needs.door = next.door;
+    }
   }
   // There is no branch, because which pipes are busy cannot be foreseen.
   uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) const {
@@ -190,31 +204,36 @@ class Scheduler {
   void find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doors);
   Stall reason_of(uint32_t warp, Cycle now, const Doors& doors) const;
 
-  // Each field of a warp is an array over all warps, or a bit of each of several words. find_ready() reads
-  // them in almost every cycle of a core.
-  const uint32_t index_;
-  Alarms& alarms_;
-  uint64_t resident_ = 0;                         // bit i: warp i holds its slot
-  OperandWheel operands_;                         // when the operands of each warp's next instruction come
-  std::array<uint64_t, kNumPipes> needs_pipe_{};  // bit i of an entry: warp i issues to that pipe next
-  std::array<uint64_t, kNumDoors> needs_door_{};  // bit i of an entry: warp i enters that door next
-  std::array<uint64_t, size_t(Stall::Count)> waits_{};  // bit i of an entry: warp i waits for that
-  std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
-  std::array<Stall, kMaxWarpsPerScheduler> wait_{};
-  std::array<Pipe, kMaxWarpsPerScheduler> pipe_{};
-  std::array<Door, kMaxWarpsPerScheduler> door_{};
-  std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
-  std::array<Cycle, kNumPipes> pipe_busy_{};           // end of the pipe's work, in parts of a cycle
+  // Holds what the next instruction of a warp needs besides its operands (NextIssue).
+  struct Needs {
+    const IssueRow* row = nullptr;
+    Stall wait = Stall::RawFixed;
+    Pipe pipe = Pipe::Int;
+    Door door = Door::None;
+  };
 
+  // find_ready() reads most of these members in almost every cycle of a core, so the smallest come first and
+  // lie together. Some fields of the warps are bits of several words, where bit i stands for warp i.
+  const uint32_t index_;
   // These are the doors that were full. The second stands for both queues of the load-store unit.
   bool watches_rt_ = false, watches_lsu_ = false;
-  uint64_t lsu_vacated_ = 0;  // Lsu::num_vacated() when the doors were looked at
   Stall reason_ = Stall::NoWarp;
-  Cycle accounted_until_ = 0;
-  std::unique_ptr<IssueScheduler> policy_;
-  const bool needs_rt_;     // IssueScheduler::needs_rt()
   const bool has_latches_;  // Params::dispatch_latch
   const bool has_banks_;    // Warps that find_ready() returns may be held back after all.
+  Alarms& alarms_;
+  std::unique_ptr<IssueScheduler> policy_;
+  const bool needs_rt_;    // IssueScheduler::needs_rt()
+  uint64_t resident_ = 0;  // the warps that hold their slots
+  Cycle accounted_until_ = 0;
+  uint64_t lsu_vacated_ = 0;                      // Lsu::num_vacated() when the doors were looked at
+  std::array<uint64_t, kNumDoors> needs_door_{};  // by door: the warps that enter it next
+  std::array<uint64_t, kNumPipes> needs_pipe_{};  // by pipe: the warps that issue to it next
+  std::array<Cycle, kNumPipes> pipe_free_{};  // first cycle in which another instruction can go to the pipe
+  std::array<Cycle, kNumPipes> pipe_busy_{};  // end of the pipe's work, in parts of a cycle
+  std::array<uint64_t, size_t(Stall::Count)> waits_{};  // by reason: the warps that wait for that
+  OperandWheel operands_;                               // when the operands of each warp come
+  std::array<Needs, kMaxWarpsPerScheduler> needs_{};
+  std::array<uint64_t, kMaxWarpsPerScheduler> age_{};  // launch number of each warp
 };
 
 }  // namespace glint::core

@@ -101,6 +101,8 @@ class Scoreboard {
     if (defs.size() > 1) [[unlikely]]
       set(defs.subspan(1), value, from);
   }
+  // Does the same for an instruction that writes one register at most (IssueRow::is_value).
+  void set_value(const IssueRow& row, Ready value) { entries_[row.first_def] = entry(value); }
 
  private:
   // Holds when a register is ready, what it waits for until then, and the pipe whose result it is, from the

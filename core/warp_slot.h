@@ -26,6 +26,11 @@ struct WarpState {
   BlockSlot* home = nullptr;       // the slot of the warp's block
   Scheduler* scheduler = nullptr;  // the slot's scheduler, which never changes
   uint32_t local = 0;              // the number of the slot in its scheduler
+  // The mask of lanes that was counted last, and its lanes: most instructions have that of the one before.
+  struct {
+    LaneMask mask = 0;
+    uint32_t lanes = 0;
+  } counted;
   Scoreboard scoreboard;
 };
 

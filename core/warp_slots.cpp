@@ -73,12 +73,12 @@ void WarpSlots::refresh_in_full(WarpSlot& at, Cycle now) {
   if (at.sequence.is_under_way()) {
     // The rest of a sequence needs only an issue slot. It has no operands, and the memory pipe, which stands
     // for its pipe here, is never busy by itself.
-    at.scheduler->set_next(at.local, {at.front.at, at.front.wait, Pipe::Memory, Door::None});
+    at.scheduler->set_next(at.local, {at.front.at, at.front.wait, Pipe::Memory, Door::None, nullptr});
     return;
   }
   const IssueRow& row = table_.row(at.warp.simt.pc);
   const Scoreboard::Ready ready = operands_ready(at, row);
-  at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door});
+  at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door, &row});
 }
 
 Scoreboard::Ready WarpSlots::operands_ready(const WarpSlot& slot, const IssueRow& row) const {

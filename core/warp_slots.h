@@ -43,8 +43,17 @@ class WarpSlots {
     const IssueRow& row = table_.row(at.warp.simt.pc);
     const Scoreboard::Ready ready = at.scoreboard.ready(row, table_.uses(row), at.front);
     prefetch_registers(at.warp, row);
-    at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door});
+    at.scheduler->set_next(at.local, {ready.at, ready.wait, row.pipe, row.door, &row});
   }
+  // Does the same for a warp that has just issued an instruction of fixed latency, where is_plain() holds.
+  void go_on(Scheduler& scheduler, uint32_t local, WarpSlot& at) {
+    const IssueRow& row = table_.row(at.warp.simt.pc);
+    const Scoreboard::Ready ready = at.scoreboard.ready(row, table_.uses(row), at.front);
+    prefetch_registers(at.warp, row);
+    scheduler.go_on(local, {ready.at, ready.wait, row.pipe, row.door, &row});
+  }
+  // Returns whether operands are ready when the scoreboard says so, and nothing else counts.
+  bool is_plain() const { return is_plain_; }
   // Notes that the warp has ended while its last accesses have not.
   void drain(uint32_t slot) { slots_[slot].scheduler->drain(slots_[slot].local); }
   // Notes that the warp has ended with all of its accesses. Another warp can take the slot.
@@ -74,7 +83,7 @@ class WarpSlots {
   const CoreObservers& observers_;
   InstructionFetch* const fetch_;
   const bool holds_operands_;  // Memory instructions read their registers when they leave their queue.
-  const bool is_plain_;        // Operands are ready when the scoreboard says so, and nothing else counts.
+  const bool is_plain_;        // is_plain()
   const uint32_t prologue_;    // machine instructions before a warp's first instruction
   const std::unique_ptr<Alarms> alarms_;  // the schedulers refer to it
   std::vector<Scheduler> schedulers_;

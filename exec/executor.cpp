@@ -67,6 +67,10 @@ void Executor::execute_effect(WarpContext& warp, Issued& issued, Cycle now) {
   }
 }
 
+void Executor::tell_retired(const WarpContext& warp, const Issued& issued) const {
+  retired.fire([&] { return Retired{warp, issued}; });
+}
+
 bool Executor::resume(WarpContext& warp) {
   control_.resume_if_empty(warp);
   if (!warp.simt.finished()) return false;

@@ -82,11 +82,7 @@ class Executor {
   Issued execute(WarpContext& warp, Cycle now) {
     const uint32_t pc = warp.simt.pc;
     const Step& step = world_.image->code[pc];
-    LaneMask exec = warp.simt.active;
-    if (step.inst.guard != isa::kNoGuard) [[unlikely]] {
-      const LaneMask guard = warp.regs.predicate[step.inst.guard & (isa::kNumPredicates - 1)];
-      exec &= step.inst.guard & isa::kGuardNegate ? ~guard : guard;
-    }
+    const LaneMask exec = lanes_at(warp, pc);
     warp.regs.exec = exec;
     Issued issued{pc, &step.inst, step.row, exec, warp.simt.active, false};
     if (step.effect != isa::Effect::None || reads_clock_) [[unlikely]] {
@@ -99,6 +95,27 @@ class Executor {
     retired.fire([&] { return Retired{warp, issued}; });
     return issued;
   }
+  // Returns the lanes that the instruction at `pc` will be executed for: active, and let through by its
+  // guard.
+  LaneMask lanes_at(const WarpContext& warp, uint32_t pc) const {
+    const isa::Inst& inst = world_.image->code[pc].inst;
+    if (inst.guard == isa::kNoGuard) [[likely]]
+      return warp.simt.active;
+    const LaneMask guard = warp.regs.predicate[inst.guard & (isa::kNumPredicates - 1)];
+    return warp.simt.active & (inst.guard & isa::kGuardNegate ? ~guard : guard);
+  }
+  // Does what execute() does for an instruction without an effect, when no shader reads the clock: for the
+  // one at `pc`, which the warp has left already, and for `lanes`, which lanes_at() has returned.
+  void execute_value(WarpContext& warp, uint32_t pc, LaneMask lanes) {
+    const Step& step = world_.image->code[pc];
+    warp.regs.exec = lanes;
+    ++warp.instructions;
+    step.run(warp.regs, step.inst, *step.row);
+    if (retired.has_listeners()) [[unlikely]]
+      tell_retired(warp, {pc, &step.inst, step.row, lanes, warp.simt.active, false});
+  }
+  // Returns whether some shader reads the clock, so that execute() has more to do.
+  bool has_clock() const { return reads_clock_; }
   // Brings what execute() needs first near to the host's core.
   void prefetch(const WarpContext& warp) const { __builtin_prefetch(&world_.image->code[warp.simt.pc]); }
   // Writes the answer predicate of the rays that the warp waits for.
@@ -139,6 +156,7 @@ class Executor {
   const World& world() const { return world_; }
 
  private:
+  void tell_retired(const WarpContext& warp, const Issued& issued) const;
   void execute_effect(WarpContext& warp, Issued& issued, Cycle now);
   bool dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   bool is_in_trace(WarpContext& warp, const isa::OpRow& row);
