@@ -20,8 +20,13 @@ class OldestFirst final : public RayScheduler {
 
   uint32_t pick(std::span<const WarpView> warps) override {
     uint32_t best = kNone;
-    for (uint32_t i = 0; i < warps.size(); ++i)
-      if (warps[i].ready && (best == kNone || warps[i].age < warps[best].age)) best = i;
+    uint64_t age = ~uint64_t{0};  // of `best`
+    // There is no branch, because which warps are ready cannot be foreseen.
+    for (uint32_t i = 0; i < warps.size(); ++i) {
+      const bool is_older = warps[i].ready & (warps[i].age < age);
+      best = is_older ? i : best;
+      age = is_older ? warps[i].age : age;
+    }
     return best;
   }
 };

@@ -108,8 +108,6 @@ uint32_t FetchQueue::add(uint32_t slot, LaneMask lanes, const Read& read) {
   made.sent = made.unanswered = 0;
   made.next = ReadInFlight::kNone;
   buffer_.serve(slot, lanes);
-  // The rays take their steps when the node has come.
-  for_each_lane(lanes, [&](int lane) { prefetch(buffer_[slot].ray_of(lane)); });
   return index;
 }
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -38,6 +39,14 @@ class RayWalk {
   // Starts the test of a node. The functional step is made now; the unit sees its outcome when the test ends.
   void start_test(uint32_t slot, int lane, Cycle now);
   void end_test(uint32_t slot, int lane, Cycle now);
+  // These bring what a test that starts soon needs near to the host's core: the lane's ray, and the node.
+  void prefetch_ray(uint32_t slot, int lane) const { prefetch(buffer_[slot].ray_of(lane)); }
+  void prefetch_node(const Fetch& node) const {
+    const std::byte* const bytes = memory_.find(node.address, node.bytes);
+    if (!bytes) return;
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + node.bytes - 1);
+  }
   // Lets a lane begin to work on a part of another lane's ray, which WorkSharing has given it.
   void start_part(uint32_t slot, int lane, Cycle now);
   // Continues with a ray that a ray pool has put into this lane.

@@ -3,6 +3,7 @@
 #include "rtunit/unit/test_pipelines.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/num_lanes.h"
 
@@ -26,6 +27,8 @@ void TestPipelines::push(const Read& read, uint32_t slot, LaneMask lanes) {
   pipe.waiting.push({slot, lanes, starts, starts});
   pipe.num_waiting += num_lanes(lanes);
   with_waiting_ |= 1u << read.pipe;
+  walk_.prefetch_node(read.what);
+  walk_.prefetch_ray(slot, std::countr_zero(lanes));
 }
 
 void TestPipelines::end_tests(Cycle now) {
@@ -36,7 +39,9 @@ void TestPipelines::end_tests(Cycle now) {
       pipe.running.pop();
       walk_.end_test(done.slot, done.lane, now);
     }
-    if (!pipe.running.empty()) next_end_ = std::min(next_end_, pipe.running.front().ready);
+    if (pipe.running.empty()) continue;
+    next_end_ = std::min(next_end_, pipe.running.front().ready);
+    walk_.prefetch_ray(pipe.running.front().slot, pipe.running.front().lane);
   }
 }
 
@@ -57,7 +62,10 @@ void TestPipelines::start_tests(Cycle now, uint32_t index) {
     next_end_ = std::min(next_end_, now + pipe.params.latency);
     --pipe.num_waiting;
     next.lanes &= next.lanes - 1;
-    if (next.lanes == 0) pipe.waiting.pop();
+    if (next.lanes != 0)
+      walk_.prefetch_ray(next.slot, std::countr_zero(next.lanes));
+    else
+      pipe.waiting.pop();
   }
   if (pipe.waiting.empty()) with_waiting_ &= ~(1u << index);
 }
