@@ -35,7 +35,7 @@ LineSectors& LineList::other_line(Address line) {
     if (lines_[i].line == line) return lines_[last_ = i];
   GLINT_CHECK(count_ < kMaxLines, "an access of more than {} lines", kMaxLines);
   last_ = count_;
-  return lines_[count_++] = {line, 0, {}, 0, 0};
+  return lines_[count_++] = {line, 0, 0, 0, 0, 0};
 }
 
 bool LineList::merge(const LineList& later) {
@@ -97,7 +97,7 @@ void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Ac
     return same;
   };
   if (turns && !returns && lines.lines().size() == 1 && is_one_word(lines.lines()[0]))
-    return lines.set_atomic(0, {1, 1});
+    return lines.set_atomic(0, 1, 1);
   const uint32_t words = (1u << std::max(bytes / 4, 1u)) - 1;
   for (size_t i = 0; i < lines.lines().size(); ++i) {
     const LaneMask lanes = lines.lines()[i].lanes;
@@ -111,7 +111,7 @@ void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Ac
       count += is_new;
       turn = is_new ? wanted : turn | wanted;
     });
-    lines.set_atomic(i, {uint8_t(std::popcount(lanes)), count});
+    lines.set_atomic(i, uint8_t(std::popcount(lanes)), count);
   }
 }
 

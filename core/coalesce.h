@@ -18,12 +18,14 @@ namespace glint::core {
 // The widest access has all texels of 32 lanes, each in a line of its own.
 inline constexpr uint32_t kMaxLines = exec::kMaxTexels * kLanes;
 
+// No member has an initialiser: a list has room for many lines, and few of them are ever touched.
 struct LineSectors {
-  Address line = 0;           // physical
-  uint8_t sectors = 0;        // bit i: sector i
-  mem::AtomicLanes atomic{};  // lanes of an atomic (count_turns())
-  mem::WordMask words = 0;    // the parts, of 32, that are touched as a whole
-  LaneMask lanes = 0;         // lanes that touch the line
+  Address line;                        // physical
+  uint8_t sectors;                     // bit i: sector i
+  uint8_t atomic_lanes, atomic_turns;  // of an atomic (count_turns())
+  mem::WordMask words;                 // the parts, of 32, that are touched as a whole
+  LaneMask lanes;                      // lanes that touch the line
+  mem::AtomicLanes atomic() const { return {atomic_lanes, atomic_turns, false}; }
 };
 
 // Holds the lines that one warp instruction touches, in the order of their first lane.
@@ -49,7 +51,10 @@ class LineList {
   // Adds what `later` touches, if it has the same lines in the same order. Otherwise it changes nothing and
   // returns false.
   bool merge(const LineList& later);
-  void set_atomic(size_t line, mem::AtomicLanes atomic) { lines_[line].atomic = atomic; }
+  void set_atomic(size_t line, uint8_t lanes, uint8_t turns) {
+    lines_[line].atomic_lanes = lanes;
+    lines_[line].atomic_turns = turns;
+  }
   Address offset(Address physical) const { return physical & mask_; }  // offset in its line
 
  private:
@@ -77,7 +82,7 @@ class LineList {
   Address mask_;         // line size - 1
   uint32_t part_shift_;  // shift to one of the 32 parts of a line
   uint32_t count_ = 0, last_ = 0;
-  std::array<LineSectors, kMaxLines> lines_;
+  std::array<LineSectors, kMaxLines> lines_;  // Entries from count_ on are not initialised.
 };
 
 // Says where the lanes' stacks lie in physical memory. Word w of lane l of warp slot s is at base + ((s *
@@ -119,11 +124,11 @@ void coalesce_global(LineList& out, const mem::AddressSpace& memory, const isa::
 void coalesce_local(LineList& out, const LocalLayout& layout, uint32_t warp_slot, const isa::Access& access,
                     LaneMask lanes, uint32_t bytes);
 
-// Fills in LineSectors::atomic of lines that coalesce_global() has made. A turn takes the lanes of a sector
-// in order, up to the first lane whose word the turn already has. An H200's times follow this rule
-// (docs/validation.md). Without `turns` each sector has one turn. Model: lanes of a reduction (not `returns`)
-// that all meet in one word count as one lane. An assembler adds them up beforehand when it knows that their
-// addresses are the same; here equal addresses at run time are enough.
+// Fills in the lanes and turns of an atomic in lines that coalesce_global() has made. A turn takes the lanes
+// of a sector in order, up to the first lane whose word the turn already has. An H200's times follow this
+// rule (docs/validation.md). Without `turns` each sector has one turn. Model: lanes of a reduction (not
+// `returns`) that all meet in one word count as one lane. An assembler adds them up beforehand when it knows
+// that their addresses are the same; here equal addresses at run time are enough.
 void count_turns(LineList& lines, const mem::AddressSpace& memory, const isa::Access& access, uint32_t bytes,
                  bool turns, bool returns);
 

@@ -196,7 +196,7 @@ bool Lsu::send_line(Cycle now, size_t p) {
     const LineSectors& line = lines[access.num_sent];
     const mem::Traffic traffic =
         access.num_sent < access.num_table_lines ? mem::Traffic::RtTable : access.traffic;
-    mem::AtomicLanes atomic = line.atomic;
+    mem::AtomicLanes atomic = line.atomic();
     atomic.adds_floats = access.atomic_kind == isa::AtomicKind::FloatAdd;
     if (!l1_.access(now, mem::Client::Lsu,
                     {line.line, line.sectors, access.write, traffic, id, line.words, atomic}))

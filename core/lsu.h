@@ -32,9 +32,8 @@ struct MemoryAccess {
   bool atomic = false;        // an atomic that shared memory does, if the word is there
   bool merges_lanes = false;  // the lanes of an atomic that meet in a word of shared memory take one turn
   isa::AtomicKind atomic_kind = isa::AtomicKind::Integer;
-  uint32_t bank_turns = 1;  // words of the fullest bank of the L1's array, where banks count
-  uint32_t passes = 0;      // passes of shared memory; a generic access may go there and to lines
-  LineList lines;
+  uint32_t bank_turns = 1;       // words of the fullest bank of the L1's array, where banks count
+  uint32_t passes = 0;           // passes of shared memory; a generic access may go there and to lines
   uint32_t num_table_lines = 0;  // the first lines, which hold the candidates that the called shaders see
 
  private:
@@ -42,6 +41,9 @@ struct MemoryAccess {
   uint32_t num_sent = 0, num_answers = 0;
   Cycle hold = 0;   // cycles of the L1's array before its first line, for words that meet in a bank
   Cycle ready = 0;  // cycle in which its first line can go from the pipe to the L1
+
+ public:
+  LineList lines;  // It takes more room than all else, so it comes last.
 };
 
 // Takes accesses through these stages: queue of each scheduler -> (accept_interval) -> load-store pipe ->

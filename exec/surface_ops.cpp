@@ -159,19 +159,20 @@ void SurfaceOps::run_seen(WarpContext& warp, const isa::Inst& inst, const isa::O
       is_late |= place[size_t(lane)] && seen_.view().waits(place[size_t(lane)], bytes_of(lane));
     });
   seen_.be_late(is_late);
+  const size_t num_words = num_data(row);
   for_each_lane(warp.regs.exec, [&](int lane) {
     const ImageLane operands(warp.regs, inst, lane);
     std::byte* const at = place[size_t(lane)];
     std::array<std::byte, MemoryView::kWidest> scratch{};
     if (row.effect == isa::Effect::SurfaceStore && at) {
       Words words{};
-      for (size_t c = 0; c < num_data(row); ++c) words[c] = operands.word(slots.data + c);
+      for (size_t c = 0; c < num_words; ++c) words[c] = operands.word(slots.data + c);
       const TexelFormat format = images_.format_of(warp, lane);
       store_texel(row, format, words, scratch.data());
       if (row.image.request == ImageRequest::Texel) note_not_finite(warp, lane, format, scratch.data());
       seen_.view().store(at, scratch.data(), bytes_of(lane));
     } else if (row.effect == isa::Effect::SurfaceAtomic && at) {
-      const uint64_t swap = num_data(row) > 1 ? operands.bits(slots.data + 1, row) : 0;
+      const uint64_t swap = num_words > 1 ? operands.bits(slots.data + 1, row) : 0;
       seen_.view().modify(
           {at, row.atomic, operands.bits(slots.data, row), swap, row.memory.bytes, to(0, lane)});
     } else if (row.effect == isa::Effect::SurfaceLoad && at && is_late) {

@@ -43,6 +43,8 @@ class Replacement {
   virtual void filled(uint32_t slot) = 0;   // reports that the slot got a new line
   virtual void touched(uint32_t slot) = 0;  // reports that an access found its line in the slot
   virtual void emptied(uint32_t) {}         // reports that the line in the slot lost its last sector
+  // Brings what the policy knows of the set near to the host's core.
+  virtual void prefetch(uint32_t /*set*/) const {}
 };
 
 // Returns the first slot from `first` to `first + ways - 1` that holds no line, or kNone.

@@ -71,10 +71,11 @@ class TagArray {
     replacement_->emptied(slot);
   }
 
-  // Brings what find() and victim() need for the line near to the host's core.
+  // Brings what find(), victim() and touch() need for the line near to the host's core.
   void prefetch(Address address) const {
     if (has_index_) return;
-    const uint32_t first = set_of(address) * shape_.ways;
+    const uint32_t set = set_of(address), first = set * shape_.ways;
+    replacement_->prefetch(set);
     for (uint32_t i = 0; i < shape_.ways; i += 64 / sizeof(Line)) __builtin_prefetch(&lines_[first + i]);
     __builtin_prefetch(&lines_[first + shape_.ways - 1]);
   }

@@ -25,6 +25,7 @@ class Lru final : public Replacement {
   }
   void filled(uint32_t slot) override { order_.make_newest(slot); }
   void touched(uint32_t slot) override { order_.make_newest(slot); }
+  void prefetch(uint32_t set) const override { order_.prefetch(set); }
 
  private:
   SlotOrder order_;

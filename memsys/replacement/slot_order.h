@@ -42,6 +42,10 @@ class SlotOrder {
     links_[newest_[set]].newer = slot;
     newest_[set] = slot;
   }
+  // Brings the order of a small set near to the host's core.
+  void prefetch(uint32_t set) const {
+    if (is_small_) __builtin_prefetch(&ways_by_age_[size_t{set} * ways_], 1);
+  }
   uint32_t oldest_not_held(uint32_t set, std::span<const CacheLine> lines) const {
     if (is_small_) {
       const uint32_t first = set * ways_;

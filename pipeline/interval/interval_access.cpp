@@ -68,7 +68,7 @@ Cycle IntervalMachine::access_lines(Core& core, const exec::Issued& issued, Cycl
     sent = core.door.take(sent, std::max(1.0 / lsu.lines_per_cycle, double(cycles)));
     if (issued.row->effect == Effect::Atomic) {
       const Cycle changed = memory_.change(core.index, line.line, line.sectors,
-                                           std::max<uint32_t>(line.atomic.turns, sectors), sent);
+                                           std::max<uint32_t>(line.atomic().turns, sectors), sent);
       if (!is_write) done = std::max(done, changed);
     } else if (is_write) {
       const Cycle gone = memory_.write(core.index, line.line, line.sectors, sent, is_local);

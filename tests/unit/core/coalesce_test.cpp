@@ -67,7 +67,7 @@ TEST_CASE_METHOD(Fixture,
     list.clear();
     coalesce_global(list, memory, access, lanes, bytes);
     count_turns(list, memory, access, bytes, true, returns);
-    return list.lines()[0].atomic;
+    return list.lines()[0].atomic();
   };
   CHECK(int(turns([](size_t i) { return i; }).turns) == 4);      // eight lanes share a sector
   CHECK(int(turns([](size_t i) { return i * 8; }).turns) == 4);  // a line has four sectors of one lane
@@ -83,8 +83,8 @@ TEST_CASE_METHOD(Fixture,
   CHECK(int(turns([](size_t) { return 3; }, kAllLanes, 4, false).lanes) == 1);
   CHECK(int(turns([](size_t i) { return i % 2; }, kAllLanes, 4, false).turns) == 16);
   count_turns(list, memory, access, 4, false, true);
-  CHECK(int(list.lines()[0].atomic.turns) == 0);
-  CHECK(int(list.lines()[0].atomic.lanes) == 32);
+  CHECK(int(list.lines()[0].atomic().turns) == 0);
+  CHECK(int(list.lines()[0].atomic().lanes) == 32);
 }
 
 TEST_CASE_METHOD(Fixture, "an access across a line's end touches both lines") {
