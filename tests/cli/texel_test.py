@@ -1,6 +1,7 @@
 # Tests images whose texels are in the pipeline file itself: every shape, any binding, and mistakes.
 # SPDX-License-Identifier: Apache-2.0
 """usage: texel_test.py GLINT SOURCE_DIR"""
+import shutil
 import struct
 
 import glint_case
@@ -186,6 +187,34 @@ class Texels(GlintTest):
             data = (self.folder / f"out/{name}.npy").read_bytes()
             self.assertIn(f"'descr': '{kind}', 'fortran_order': False, 'shape': (1, 2, 4)".encode(), data)
             self.assertEqual(struct.unpack("<8I" if kind == "<u4" else "<8i", data[-32:]), numbers)
+
+    def test_integers_are_the_bytes_of_a_png_when_read_and_when_saved(self):
+        self.write("count.comp", """#version 460
+layout(local_size_x = 16, local_size_y = 16) in;
+layout(set = 0, binding = 0, rgba8ui) uniform writeonly uimage2D made;
+layout(set = 0, binding = 1, r32i) uniform writeonly iimage2D wide;
+void main() {
+  const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  imageStore(made, at, uvec4(at.x + 16 * at.y, 255 - at.x, at.y, 255));
+  imageStore(wide, at, ivec4(100 * at.x - 300));
+}
+""")
+        image = '[[image]]\nbinding = {}\nsize = [16, 16]\nformat = "{}"\nsave = "{}"\n'
+        made, wide = image.format(0, "rgba8_uint", "made.png"), image.format(1, "r32_sint", "wide.png")
+        self.run_text(0, [], f'[compute]\nshader = "count.comp"\n[launch]\ngroups = 1\n{made}{wide}')
+        width, height, data = glint_case.read_png(self.folder / "out/made.png")
+        expected = bytes(v for y in range(16) for x in range(16) for v in (x + 16 * y, 255 - x, y))
+        self.assertEqual((width, height, bytes(data)), (16, 16, expected))
+        _, _, data = glint_case.read_png(self.folder / "out/wide.png")
+        self.assertEqual(list(data[:30:3]), [0, 0, 0, 0, 100, 200, 255, 255, 255, 255])
+        self.write("copy.comp", """#version 460
+layout(local_size_x = 16, local_size_y = 16) in;
+layout(set = 0, binding = 0, rgba8ui) uniform uimage2D read;
+void main() { imageStore(read, ivec2(gl_GlobalInvocationID.xy), imageLoad(read, ivec2(gl_GlobalInvocationID.xy))); }
+""")
+        shutil.copy(self.folder / "out/made.png", self.folder / "made.png")
+        self.run_text(0, [], '[compute]\nshader = "copy.comp"\n[launch]\ngroups = 1\n[[image]]\nbinding = 0\nfile = "made.png"\nformat = "rgba8_uint"\nsave = "again.png"\n')
+        self.assertEqual(bytes(glint_case.read_png(self.folder / "out/again.png")[2]), expected)
 
     def test_files_that_the_run_writes_itself_or_that_are_saved_twice_are_refused(self):
         self.refused('"out.csv"', '"stats.csv"', "p.toml:", "the run itself writes 'stats.csv'")

@@ -118,8 +118,13 @@ std::string image_file(const std::string& file, const exec::ImageView& view,
     return std::string(text_of(bytes));
   const uint32_t rows = view.height * view.depth * view.layers;
   if (ending == ".npy" || ending == ".csv") return numbers_file(ending, view, rows, bytes);
-  const std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
-  if (ending == ".png") return pictures::png_bytes({view.width, rows, texels});
+  std::vector<float> texels = pipeline::texels_as_floats(view, bytes.data());
+  if (ending == ".png") {
+    // The bytes of a PNG are integers as they are, as those of a PNG become integers when an image is read.
+    if (exec::is_integer(exec::info_of(view.format)))
+      for (float& channel : texels) channel /= 255.0f;
+    return pictures::png_bytes({view.width, rows, texels});
+  }
   if (ending == ".pfm") return pictures::pfm_bytes({view.width, rows, texels});
   return pictures::exr_bytes({view.width, rows, texels});
 }
