@@ -28,7 +28,8 @@ class Files(SweepTest):
         for line, old, new, words in (
                 (2, '"store"', "5", "the path of a folder is needed"), (1, WHOLE, "design = 5\n" + "\n".join(LINES[:5]), "a table [[design]] is needed"),
                 (7, LINES[6], LINES[6] + "\n[dask]\nscheduler = 5", "tcp://host:8786"), (7, "[2, 4]", "[1979-05-27]", "a number, a text, true or false"), (7, "[2, 4]", "[[2], [4]]", "integer"),
-                (1, "WKND_SH", "WKND\\u0000", "a zero byte"), (7, "keys", "points = 9\nkeys", "takes no `points`"), (2, "store =", "threads = 100000\nstore =", "--threads"),
+                (1, "WKND_SH", "WKND\\u0000", "a zero byte"), (7, "keys", "points = 9\nkeys", "takes no `points`"), (7, "keys", "method = 5\nkeys", "`method` is 5: it is one of grid"),
+                (1, "WKND_SH", "x" * 300 + ".toml", "xxx.toml"), (2, "store =", "threads = 100000\nstore =", "--threads"),
                 (2, "store =", "seeds = [1.5]\nstore =", "a whole number"), (2, "store =", "objectives = []\nstore =", "one metric at least"),
                 (7, LINES[6], LINES[6] + "\n[limits]\ntimeout = -5", "no time"), (2, "store =", "constraints = [' ']\nstore =", "an empty text"), (2, "store =", f"constraints = [{'(' * 5000 + '1' + ')' * 5000!r}]\nstore =", "cannot be"),
                 (2, "store =", "constraints = ['1 // 0 > rt.warps']\nstore =", "cannot be computed"), (2, "store =", "constraints = ['min(1)()']\nstore =", "may have keys")):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import os
 import pathlib
 import re
 import tomllib
@@ -263,7 +264,7 @@ def _seeds(tree: Mapping[str, Any]) -> list[int]:
 
 def _path(given: str, folder: pathlib.Path) -> str:
     """Returns the path of a file beside the sweep's, or the text itself where there is no such file."""
-    return str(folder / given) if (folder / given).exists() and ("." in given or "/" in given) else given
+    return str(folder / given) if os.path.exists(folder / given) and ("." in given or "/" in given) else given
 
 
 def _options(table: dict[str, Any], folder: pathlib.Path) -> tuple[list[str], list[str]]:
@@ -296,7 +297,7 @@ def _designs(given: Any) -> list[dict[str, Any]]:
         design = dict(one)
         design.setdefault("method", "list" if "list" in design else "grid")
         if design["method"] not in METHODS:
-            raise SweepError(f"the method is {design['method']!r}: it is one of {', '.join(METHODS)}")
+            raise SweepError(f"`method` is {design['method']!r}: it is one of {', '.join(METHODS)}")
         if "points" in design:
             _whole(design["points"], "points", 1)
             if design["method"] in ("grid", "list"):
