@@ -56,6 +56,11 @@ class Files(LabTest):
                                '[[arm]]\nname = "c"\nagainst = "zz"\nexpected = [2, 1]\nlest = 3\n')
         self.expect(2, ["bad.toml:4", "small letters", "no 'against'", "bad.toml:10", "the smaller first", "did you mean 'least'?",
                         "'zz', which is no arm before it"], "lab", "bad.toml")
+        self.write("bad.toml", 'title = "x"\nsource = "y"\nconfig = "mobile"\nsize = "8"\nworkloads = ["SHIPP_SH"]\n[[arm]]\nname = "a"\nworkloads = ["nosuch"]\n')
+        self.expect(2, ["bad.toml:4:1: error: --size is '8'", "bad.toml:5:1: error: there is no workload or suite 'SHIPP_SH'", "did you mean 'SHIP_SH'?",
+                        "bad.toml:8:1: error: there is no workload or suite 'nosuch'"], "lab", "bad.toml")
+        self.expect(2, ["c.toml:3:1: error: there is no configuration 'mobil'"], "lab",
+                    self.write("c.toml", 'title = "x"\nsource = "y"\nconfig = "mobil"\n[[arm]]\nname = "a"\n'))
         self.expect(2, ["at least one [[arm]]"], "lab", self.write("none.toml", 'title = "x"\nsource = "y"\nconfig = "mobile"\n'))
         self.expect(2, ["mine.toml:16:11: error: 'sum(rt.nodes) /' is not a formula"], "lab", self.write("mine.toml", SMALL.format(title="x", setting="rt.warps=1", published=1)
                                                                    .replace("/ sum(rt.rays)", "/")))

@@ -19,6 +19,7 @@
 #include "apps/glint/options/report_writer.h"
 #include "apps/glint/session.h"
 #include "report/files/run_directory.h"
+#include "setup/config.h"
 #include "setup/oracles.h"
 
 namespace glint::app {
@@ -145,9 +146,23 @@ std::string stem_of(const std::string& config) {
   return std::filesystem::path(config).stem().string();
 }
 
+// Says at the file's line that its configuration is none.
+void check_config(const Session& session, const Experiment& experiment) {
+  try {
+    setup::read_preset(session.resources, experiment.config);
+  } catch (const UserError& error) {
+    const std::string what = error.what();  // An error without a place begins with "error: ".
+    if (!what.starts_with("error: ")) throw;
+    throw UserError(experiment.config_where, what.substr(what.find(' ') + 1));
+  }
+}
+
 Exit run_lab(const Session& session, const LabOptions& options) {
   Experiment experiment = read_experiment(session.resources.lab_path(options.name));
-  if (!options.config.empty()) experiment.config = options.config;
+  if (!options.config.empty())
+    experiment.config = options.config;
+  else
+    check_config(session, experiment);
   if (!options.size.empty()) experiment.size = options.size;
   std::vector<RefusedPair> refused;
   if (experiment.pairs) refused = add_pairs(session.resources, experiment);

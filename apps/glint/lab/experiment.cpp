@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
 
+#include "apps/glint/bench/workloads.h"
+#include "apps/glint/options/image_size.h"
 #include "base/diagnostics.h"
 #include "pipeline/description/value.h"
 #include "report/metrics/formula.h"
@@ -27,9 +30,12 @@ class ExperimentReader {
     out.title = table.required_text("title");
     out.source = table.required_text("source");
     out.config = table.required_text("config");
+    if (const Value* config = table.take("config")) out.config_where = config->where;
     out.settings = table.texts("set");
     out.workloads = table.texts("workloads");
+    check(table, "workloads", [&] { select_workloads(out.workloads); });
     out.size = table.text("size", out.size);
+    check(table, "size", [&] { parse_size(out.size, frame_); });
     out.samples = uint32_t(table.integer("spp", out.samples, 1, 65536));
     out.bounces = uint32_t(table.integer("bounces", out.bounces, 1, 1000));
     out.ao_reach = uint32_t(table.integer("ao_reach", out.ao_reach, 0, 100));
@@ -50,6 +56,7 @@ class ExperimentReader {
     out.against = table.text("against");
     out.settings = table.texts("set");
     out.workloads = table.texts("workloads");
+    check(table, "workloads", [&] { select_workloads(out.workloads); });
     out.oracles = table.texts("oracle");
     if (const auto reach = table.optional_integer("ao_reach", 0, 100)) out.ao_reach = uint32_t(*reach);
     out.published = read_number(table, "published");
@@ -96,12 +103,20 @@ class ExperimentReader {
   }
 
   void check_formula(const std::string& formula, const Value& value) {
+    check(value, [&] { report::paths_in(formula); });
+  }
+
+  // Reports at the value's place what its use would refuse.
+  void check(const Value& value, const std::function<void()>& use) {
     try {
-      report::paths_in(formula);
+      use();
     } catch (const UserError& error) {
       const std::string what = error.what();  // It has no place of its own, and begins with "error: ".
       errors_.error(value.where, what.substr(what.find(' ') + 1));
     }
+  }
+  void check(TableReader& table, const std::string& key, const std::function<void()>& use) {
+    if (const Value* value = table.take(key)) check(*value, use);
   }
 
   std::optional<double> read_number(TableReader& table, const std::string& key) {
@@ -124,6 +139,7 @@ class ExperimentReader {
 
   const std::string path_;
   const Value file_;
+  scenes::RenderParams frame_;
   Diagnostics errors_;
 };
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
+
 namespace glint::app {
 
 // Holds the values that count as the same effect, both ends included.
@@ -39,6 +41,7 @@ struct LabArm {
 
 struct Experiment {
   std::string name, title, source, config;
+  SourceLocation config_where;
   std::vector<std::string> settings, workloads;  // settings of all arms
   std::string size = "128x128";
   uint32_t samples = 1, bounces = 16, ao_reach = 0;
