@@ -207,7 +207,12 @@ std::vector<uint32_t> assemble_spirv(const std::string& text, const std::string&
     std::string message = "cannot be assembled";
     std::vector<uint32_t> words;
     const bool done = assemble_as(version, text, &words, &where, &message);
-    if (!done && newest.empty()) throw UserError(where, message);
+    if (!done && newest.empty())
+      throw UserError(
+          where, message,
+          message.starts_with("Invalid ")
+              ? "the installed SPIRV-Tools do not know this name: it is misspelled, or younger than they are"
+              : "");
     if (done) check_limits(words, name, kDeepestValidated);
     if (done && validate_spirv(words).empty()) return words;
     if (newest.empty()) newest = std::move(words);

@@ -60,6 +60,10 @@ class Shaders(GlintTest):
                 self.assertNotIn("extra tokens", said.stderr)
                 self.assertNotIn("built-ins", said.stderr)
 
+    def test_a_name_that_the_assembler_does_not_know_may_be_too_young_for_it(self):
+        self.write("a.spvasm", "OpCapability Shader\nOpCapability FromTheFuture\n")
+        self.expect(2, ["a.spvasm:2:14: error: Invalid capability 'FromTheFuture'", "misspelled, or younger than they are"], "compile", "a.spvasm")
+
     def test_an_unknown_extension_that_is_only_enabled_is_no_error(self):
         self.write("a.comp", "#version 460\n#extension GL_FOO_bar : enable\n" + COMPUTE)
         self.assertEqual(self.glint("compile", "a.comp").returncode, 0)
