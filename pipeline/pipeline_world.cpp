@@ -66,7 +66,7 @@ std::string title(const std::string& name, const Slot& slot) {
 
 }  // namespace
 
-PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuParams& gpu)
+PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuParams& gpu, uint32_t threads)
     : description_(description), modules_(description_, compiler_for(gpu)) {
   warnings = modules_.warnings;
   check_pipeline(description_, modules_, warnings);
@@ -75,7 +75,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   upload_buffers();
   upload_images();
   add_samplers();
-  const uint32_t stack_need = build_structures(gpu);
+  const uint32_t stack_need = build_structures(gpu, threads);
   for (const Built& launch : launches_) {
     if (launch.description.raygen) fill_records(launch);
     set_push_constants(launch);
@@ -200,7 +200,7 @@ void PipelineWorld::add_samplers() {
     for (const auto& [place, elements] : bound.all) launch.builder->bind_samplers(place, elements);
 }
 
-uint32_t PipelineWorld::build_structures(const GpuParams& gpu) {
+uint32_t PipelineWorld::build_structures(const GpuParams& gpu, uint32_t threads) {
   std::vector<rt::StructureInfo> bottoms;
   for (const BottomLevelDescription& description : description_.bottom_levels) {
     rt::BottomLevel level;
@@ -211,7 +211,7 @@ uint32_t PipelineWorld::build_structures(const GpuParams& gpu) {
       geometry.transform = g.transform, geometry.opaque = g.opaque,
       geometry.no_duplicate_any_hit = g.no_duplicate_any_hit;
       if (!g.mesh.empty()) {
-        models.push_back(load_mesh(g.mesh, g.where));
+        models.push_back(load_mesh(g.mesh, g.where, threads));
         geometry.positions = std::as_bytes(std::span(models.back().vertices));
         geometry.stride = sizeof(scenes::Vertex);
         geometry.indices = models.back().indices;
@@ -226,7 +226,7 @@ uint32_t PipelineWorld::build_structures(const GpuParams& gpu) {
                                                        : geometry.indices.size() / 3;
       level.geometries.push_back(geometry);
     }
-    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + description.name, level, gpu.bvh));
+    bottoms.push_back(rt::build_bottom(memory_, "bottom level " + description.name, level, gpu.bvh, threads));
     structures.bytes += bottoms.back().bytes;
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);
   }

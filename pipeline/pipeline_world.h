@@ -21,9 +21,10 @@ namespace glint::pipeline {
 // each other. It cannot be moved, because the worlds point into it.
 class PipelineWorld {
  public:
-  // Throws UserError that lists what is wrong with the description, or UnsupportedError for what a shader
-  // uses and Glint lacks.
-  PipelineWorld(const PipelineDescription& description, const GpuParams& gpu);
+  // Reads meshes and builds structures on up to `threads` threads of the host, which show in nothing. Throws
+  // UserError that lists what is wrong with the description, or UnsupportedError for what a shader uses and
+  // Glint lacks.
+  PipelineWorld(const PipelineDescription& description, const GpuParams& gpu, uint32_t threads = 1);
   PipelineWorld(const PipelineWorld&) = delete;
   PipelineWorld& operator=(const PipelineWorld&) = delete;
 
@@ -55,7 +56,7 @@ class PipelineWorld {
   void upload_buffers();
   void upload_images();
   void add_samplers();
-  uint32_t build_structures(const GpuParams& gpu);
+  uint32_t build_structures(const GpuParams& gpu, uint32_t threads);
   void fill_records(const Built& launch);
   void set_push_constants(const Built& launch);
   const BindingUse* use_of(const Slot& slot) const;

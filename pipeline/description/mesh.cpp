@@ -12,16 +12,20 @@
 
 namespace glint::pipeline {
 
-scenes::Model load_mesh(const std::string& path, const SourceLocation& where) {
+scenes::Model load_mesh(const std::string& path, const SourceLocation& where, uint32_t threads) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed))
     throw UserError(where, fmt::format("cannot read '{}'", path));
   if (!scenes::names_scene_file(path))
     throw UserError(where, fmt::format("'{}' is not a mesh that is read here", path),
                     "OBJ and glTF files are read");
-  if (!path.ends_with(".obj")) return scenes::flattened(scenes::load_gltf(path, {}));
+  if (!path.ends_with(".obj")) {
+    scenes::LoadOptions options;
+    options.threads = threads;
+    return scenes::flattened(scenes::load_gltf(path, options));
+  }
   std::vector<scenes::Material> materials;
-  return scenes::load_obj(path, materials);
+  return scenes::load_obj(path, materials, {.threads = threads});
 }
 
 std::vector<std::byte> mesh_attribute(const DataSource& source) {

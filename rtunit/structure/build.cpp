@@ -155,8 +155,8 @@ StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedS
 }
 
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
-                           const BuildOptions& options) {
-  return place(memory, name, encode_bottom(name, input, options));
+                           const BuildOptions& options, uint32_t threads) {
+  return place(memory, name, encode_bottom(name, input, options, threads));
 }
 
 }  // namespace glint::rt

@@ -93,9 +93,9 @@ StructureInfo place(mem::AddressSpace& memory, const std::string& name, EncodedS
 // Micromaps come on top of it.
 uint64_t most_bytes(uint8_t level, uint64_t primitives, const BuildOptions& options = {});
 
-// Encodes a bottom level and places it in memory.
+// Encodes a bottom level, as encode_bottom() does, and places it in memory.
 StructureInfo build_bottom(mem::AddressSpace& memory, const std::string& name, const BottomLevel& input,
-                           const BuildOptions& options = {});
+                           const BuildOptions& options = {}, uint32_t threads = 1);
 
 // Returns why no ray can be taken into the space of `instance`, which stands for `bottom`, as a clause like
 // "its transform ...", or "".

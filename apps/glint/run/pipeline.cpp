@@ -15,6 +15,7 @@
 #include "apps/glint/run/outputs.h"
 #include "apps/glint/run/recorded_run.h"
 #include "apps/glint/run/single_launch.h"
+#include "base/host_threads.h"
 #include "pipeline/description/defaults.h"
 #include "pipeline/description/pictures.h"
 #include "pipeline/pipeline_world.h"
@@ -196,7 +197,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   const pipeline::RenderJob& job = machine.job;
   const bool is_list = !description.launches[0].name.empty();
   check_listed(options.sample, is_list, job.timing, what);
-  pipeline::PipelineWorld world(description, job.gpu);
+  pipeline::PipelineWorld world(description, job.gpu, host_threads(job.threads));
   exec::PrintLog prints(options.print_limit);
   for (size_t i = 0; i < world.num_launches(); ++i)
     world.world(i).prints = &prints, world.world(i).on_fault = options.on_fault;
