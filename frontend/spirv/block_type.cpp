@@ -135,12 +135,6 @@ BlockType block_type(const Module& module, Id type) {
   return Walk(module).of(type, {});
 }
 
-bool has_targets(const BlockType& type) {
-  return !type.target.empty() || std::any_of(type.element.begin(), type.element.end(), has_targets) ||
-         std::any_of(type.members.begin(), type.members.end(),
-                     [](const BlockMember& member) { return has_targets(member.type); });
-}
-
 std::vector<std::string> describe_members(const BlockType& block) {
   std::vector<std::string> out;
   describe(block, "", 0, out);

@@ -26,9 +26,6 @@ struct BlockType {
   std::vector<BlockType> target;
 };
 
-// Returns whether a block has addresses whose targets are known.
-bool has_targets(const BlockType& type);
-
 struct BlockMember {
   std::string name;
   uint32_t offset = 0;  // bytes

@@ -304,7 +304,7 @@ class Writer {
     const std::string number = number_of(block);
     const uint64_t bytes = std::max<uint64_t>(default_bytes(block), uint64_t{elements} * block.bytes);
     line("type = {}\nbytes = {}", quoted(number), bytes);
-    if (has_targets(block))
+    if (has_targets("", block))
       line("data = {}", value_of("", block));
     else
       line("{}; or data = [...], or file = \"...\"", init_of(meaning, number));

@@ -44,6 +44,21 @@ Matrix4 product(const Matrix4& a, const Matrix4& b) {
   return out;
 }
 
+std::string lower(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return name;
+}
+
+// Returns a block of a run-time array of numbers of 32 bits.
+BlockType list_of(const std::string& number) {
+  BlockType each, list, block;
+  each.number = number, each.offsets = {0}, each.bytes = 4;
+  list.kind = BlockType::Kind::Array, list.stride = 4, list.element = {each};
+  block.kind = BlockType::Kind::Struct, block.members = {{"values", 0, list}};
+  return block;
+}
+
 bool has_any(const std::string& name, std::initializer_list<const char*> words) {
   return std::any_of(words.begin(), words.end(),
                      [&](const char* word) { return name.find(word) != std::string::npos; });
@@ -118,11 +133,31 @@ std::string default_text(const frontend::SpecConstant& c) {
   return fmt::format("{}", int64_t(c.value));
 }
 
+const BlockType* target_of(const std::string& name, const BlockType& type) {
+  static const BlockType kFloats = list_of("f32"), kWholeNumbers = list_of("u32");
+  if (!type.target.empty()) return &type.target[0];
+  const std::string small = lower(name);
+  const bool is_address = type.kind == BlockType::Kind::Numbers && type.number == "u64" &&
+                          type.offsets.size() == 1 && has_any(small, {"addr", "pointer", "ptr"});
+  if (!is_address) return nullptr;
+  return has_any(small, {"ind"}) ? &kWholeNumbers : &kFloats;
+}
+
+bool has_targets(const std::string& name, const BlockType& type) {
+  return target_of(name, type) ||
+         std::any_of(type.element.begin(), type.element.end(),
+                     [&](const BlockType& element) { return has_targets(name, element); }) ||
+         std::any_of(type.members.begin(), type.members.end(), [](const frontend::BlockMember& member) {
+           return has_targets(member.name, member.type);
+         });
+}
+
 std::string usual_value(const std::string& name, const BlockType& type, uint32_t side,
                         const NameTarget& name_target) {
-  if (!type.target.empty()) return fmt::format("\"{}\"", name_target(name, type.target[0]));
+  if (const BlockType* target = target_of(name, type))
+    return fmt::format("\"{}\"", name_target(name, *target));
   if (type.kind == BlockType::Kind::Array) {
-    const uint32_t count = type.count == 0 ? has_targets(type) : std::min(type.count, kMostWritten);
+    const uint32_t count = type.count == 0 ? has_targets(name, type) : std::min(type.count, kMostWritten);
     const std::string each = count ? usual_value(name, type.element[0], side, name_target) : "";
     return fmt::format("[{}]", fmt::join(std::vector<std::string>(count, each), ", "));
   }
@@ -133,10 +168,7 @@ std::string usual_value(const std::string& name, const BlockType& type, uint32_t
           fmt::format("{} = {}", member.name, usual_value(member.name, member.type, side, name_target)));
     return fmt::format("{{ {} }}", fmt::join(members, ", "));
   }
-  std::string small = name;
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return numbers_text(small, type, side);
+  return numbers_text(lower(name), type, side);
 }
 
 }  // namespace glint::pipeline

@@ -402,6 +402,31 @@ void main() {
         self.assertRegex(self.run_file("walk.toml").stdout, r"Out +0 1 2 3 4 5")
         self.assertRegex(self.run_file("walk.comp").stdout, r"Out +0 1 2 3 4 5")
 
+    def test_numbers_whose_names_say_that_they_are_addresses_lead_to_buffers(self):
+        self.write("objects.comp", """#version 460
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+layout(local_size_x = 4) in;
+struct Object { int first; uint64_t vertexAddress, indexAddress, hash; };
+layout(buffer_reference, scalar) buffer Vertices { vec3 v[]; };
+layout(buffer_reference, scalar) buffer Indices { ivec3 i[]; };
+layout(set = 0, binding = 0, scalar) buffer Objects { Object objects[]; };
+layout(set = 0, binding = 1) buffer Out { uint o[]; };
+void main() {
+  const Object object = objects[0];
+  const uint lane = gl_GlobalInvocationID.x;
+  o[lane] = 5 + uint(Vertices(object.vertexAddress).v[lane % 100].y) + Indices(object.indexAddress).i[lane % 100].z + uint(object.hash);
+}
+""")
+        done = self.glint("init", "objects.toml", "objects.comp")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        line = 'data = { objects = [{ first = 0, vertexAddress = "vertexAddress", indexAddress = "indexAddress", hash = 0 }] }\n'
+        text = (self.folder / "objects.toml").read_text()
+        self.assertIn(line, text)
+        self.assertIn('name = "indexAddress"\n# values[]: u32 x 1 at 0\n', text)
+        self.assertRegex(self.run_file("objects.toml").stdout, r"Out +5 5 5 5")
+
     def test_init_does_not_write_over_a_file(self):
         self.write("there.toml", "x")
         self.expect(2, ["exists already", "--force"], "init", "there.toml", ROOT / "examples/reduction/reduction.comp")
