@@ -4,6 +4,7 @@
 #include "memsys/dram/dram_channel.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace glint::mem {
@@ -120,16 +121,25 @@ DramChannel::Command DramChannel::next_command_of(const Bank& bank) const {
 // Finds the first clock, not before `first`, in which a command can go out.
 void DramChannel::plan_from(DramClock first) {
   plan_ = {};
+  // Which bank comes first cannot be foreseen, so the first loops have no branch for it.
+  std::array<DramClock, 64> at;
   for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
     const uint32_t index = uint32_t(std::countr_zero(rest));
     const Bank& bank = banks_[index];
     const DramClock shared =
         std::max(group_gates_[bank_group_[index]].at[bank.next], channel_gates_.at[bank.next]);
-    const DramClock at = std::max(std::max(bank.gates.at[bank.next], shared), first);
-    if (at > plan_.at) continue;
-    if (at < plan_.at) plan_ = {at, kNone, kNone};
-    uint32_t& best = bank.next >= Read ? plan_.column : plan_.row;
-    if (best == kNone || bank.age < banks_[best].age) best = index;
+    at[index] = std::max(std::max(bank.gates.at[bank.next], shared), first);
+    plan_.at = std::min(plan_.at, at[index]);
+  }
+  uint64_t ready = 0;
+  for (uint64_t rest = busy_banks_; rest; rest &= rest - 1) {
+    const uint32_t index = uint32_t(std::countr_zero(rest));
+    ready |= uint64_t{at[index] == plan_.at} << index;
+  }
+  for (; ready; ready &= ready - 1) {
+    const uint32_t index = uint32_t(std::countr_zero(ready));
+    uint32_t& best = banks_[index].next >= Read ? plan_.column : plan_.row;
+    if (best == kNone || banks_[index].age < banks_[best].age) best = index;
   }
 }
 
