@@ -25,11 +25,11 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  // Returns the bytes of a regular file, or 0.
-  size_t size() const {
+  // Returns the bytes of a regular file, or nullopt for anything else.
+  std::optional<size_t> size() const {
     struct stat status {};
     const bool is_regular = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
-    return is_regular ? size_t(status.st_size) : 0;
+    return is_regular ? std::optional(size_t(status.st_size)) : std::nullopt;
   }
 
   // Says whether the host alone decides when the file's bytes go away.
@@ -75,11 +75,12 @@ void FreePages::operator()(void* pages) const {
 
 std::optional<Pages> pages_of_file(const std::string& path) {
   const OpenFile file(path);
-  const size_t bytes = file.size();
-  if (bytes == 0) return std::nullopt;
+  const std::optional<size_t> bytes = file.size();
+  if (!bytes) return std::nullopt;
+  if (*bytes == 0) return Pages();
   const bool is_local = file.is_local();
-  Pages pages = file.map(bytes, is_local);
-  if (!pages || (!is_local && !file.read(pages.get(), bytes))) return std::nullopt;
+  Pages pages = file.map(*bytes, is_local);
+  if (!pages || (!is_local && !file.read(pages.get(), *bytes))) return std::nullopt;
   return pages;
 }
 

@@ -18,8 +18,8 @@ using Pages = std::unique_ptr<void, FreePages>;
 // Returns pages that hold the bytes of a file. What is written there stays in this process. Pages of a file
 // on a local disk are those that the host keeps of it, so that a large file takes neither time nor memory
 // before it is touched. A file on another file system is read at once: another machine could take it away
-// later. The file must not be changed while the pages are in use, but it may be removed. Returns nullopt when
-// the file cannot be read, and when it is empty.
+// later. The file must not be changed while the pages are in use, but it may be removed. An empty file has
+// no pages: they are null. Returns nullopt when the file cannot be read.
 std::optional<Pages> pages_of_file(const std::string& path);
 
 }  // namespace glint

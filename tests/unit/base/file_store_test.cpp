@@ -73,7 +73,7 @@ TEST_CASE("a file that is cut or changed anywhere is damaged and found no more")
     CHECK(both_of(store, "key").empty());
     CHECK(store.damaged() == ++damaged);
   }
-  for (const size_t size : {size_t{1}, size_t{40}, size_t{4096}, good.size() - 1}) {
+  for (const size_t size : {size_t{0}, size_t{1}, size_t{40}, size_t{4096}, good.size() - 1}) {
     folder.write(name, good.substr(0, size));
     CAPTURE(size);
     CHECK(both_of(store, "key").empty());
