@@ -20,10 +20,10 @@ class Repairs {
   explicit Repairs(const Words& words) : words_(words) {}
 
   Words run() {
-    for_each([&](spv::Op op, std::span<const uint32_t> w) { note(op, w); });
+    for_each_instruction(words_, [&](spv::Op op, std::span<const uint32_t> w) { note(op, w); });
     out_.assign(words_.begin(), words_.begin() + kHeaderWords);
     for (const spv::Capability missing : missing_) append(out_, OpCapability, {uint32_t(missing)});
-    for_each([&](spv::Op op, std::span<const uint32_t> w) {
+    for_each_instruction(words_, [&](spv::Op op, std::span<const uint32_t> w) {
       if (op == OpStore && w.size() >= 3) return store(w);
       out_.insert(out_.end(), w.begin(), w.end());
     });
@@ -31,16 +31,6 @@ class Repairs {
   }
 
  private:
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (size_t at = kHeaderWords; at < words_.size();) {
-      const size_t length = words_[at] >> 16;
-      if (length == 0 || length > words_.size() - at) return;
-      visit(op_of(words_[at]), std::span(words_).subspan(at, length));
-      at += length;
-    }
-  }
-
   void note(spv::Op op, std::span<const uint32_t> w) {
     if (op == OpCapability && w.size() == 2) had_.insert(spv::Capability(w[1]));
     if (op == OpTypeInt && w.size() == 4 && w[2] == 8) need(spv::Capability::Int8);

@@ -24,27 +24,18 @@ class Rewrite {
 
   bool is_needed() const {
     bool found = false;
-    for_each([&](spv::Op op, std::span<const uint32_t> w) {
+    for_each_instruction(words_, [&](spv::Op op, std::span<const uint32_t> w) {
       found |= op == OpCapability && w.size() == 2 && is_ours(w[1]);
     });
     return found;
   }
 
   std::vector<uint32_t> run() {
-    for_each([&](spv::Op op, std::span<const uint32_t> w) { change(op, w); });
+    for_each_instruction(words_, [&](spv::Op op, std::span<const uint32_t> w) { change(op, w); });
     return std::move(out_);
   }
 
  private:
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (size_t at = kHeaderWords; at < words_.size();) {
-      const size_t length = words_[at] >> 16;
-      if (length == 0 || length > words_.size() - at) return;  // The validator reports this.
-      visit(spv::Op(words_[at] & 0xffff), std::span(words_).subspan(at, length));
-      at += length;
-    }
-  }
   static bool is_ours(uint32_t capability) {
     return spv::Capability(capability) == kRayTracingPositionFetch ||
            spv::Capability(capability) == kRayQueryPositionFetch;
@@ -63,7 +54,7 @@ class Rewrite {
 
   // Declares the types and constants of the instructions that follow, before the first function.
   void declare() {
-    for_each([&](spv::Op op, std::span<const uint32_t> w) {
+    for_each_instruction(words_, [&](spv::Op op, std::span<const uint32_t> w) {
       if (op != kGetIntersectionTriangleVertexPositions || w.size() != 5) return;
       const auto column = element_of_.find(w[1]);
       const auto which = constants_.find(w[4]);

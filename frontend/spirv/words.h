@@ -21,6 +21,18 @@ inline spv::Op op_of(uint32_t first_word) {
   return spv::Op(first_word & 0xffff);
 }
 
+// Calls visit(op, words) for each instruction of a module, whose words begin with that of the op. It ends at
+// an instruction that is longer than the module, which the validator reports.
+template <class Visit>
+void for_each_instruction(std::span<const uint32_t> module, const Visit& visit) {
+  for (size_t at = kHeaderWords; at < module.size();) {
+    const size_t length = module[at] >> 16;
+    if (length == 0 || length > module.size() - at) return;
+    visit(op_of(module[at]), module.subspan(at, length));
+    at += length;
+  }
+}
+
 // Returns the literal string that begins at the first word. It ends at its zero byte, or with the words.
 std::string text_at(std::span<const uint32_t> words);
 
