@@ -55,6 +55,10 @@ class GlintTest(unittest.TestCase):
         with (self.folder / name).open(newline="") as file:
             return list(csv.DictReader(file))
 
+    def saved_numbers(self, name="out.csv", number=float):
+        """Returns the numbers of a buffer that a run into the folder `out` saved as CSV."""
+        return [number(v) for v in (self.folder / "out" / name).read_text().split()[1:]]
+
     def facts(self, out):
         """Returns what run.json of a folder says."""
         return json.loads((self.folder / out / "run.json").read_text())

@@ -52,9 +52,6 @@ class RulesTest(GlintTest):
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
-    def numbers(self, name="out.csv"):
-        return [float(v) for v in (self.folder / "out" / name).read_text().split()[1:]]
-
     def shoot(self, instances="", flags=0, mask=255, offset=0, stride=0, miss=0, ray=DOWN, ends=((0, 100),), hits=HIT.format(tag=7), geometry=TRIANGLE, more="", table=""):
         """Returns what the payload holds after each ray: (t, kind, 100 instance + 10 geometry + primitive, the record's tag)."""
         rays = ", ".join(f"{v}" for low, high in ends for v in (*ray[0], low, *ray[1], high))
@@ -66,7 +63,7 @@ class RulesTest(GlintTest):
         seen = []
         for mode in ("functional", "timing"):
             self.log = self.glint(self.write("p.toml", text), mode)
-            words = self.numbers()
+            words = self.saved_numbers()
             seen.append([tuple(words[i:i + 4]) for i in range(0, len(words), 4)])
         self.assertEqual(seen[0], seen[1])
         return seen[0]
@@ -224,7 +221,7 @@ class Files(RulesTest):
         tables = "".join(f"[[buffer]]\nbinding = 0\nelement = {e}\ndata = [{', '.join(str(10 * e + k) for k in range(4 + e))}]\n" for e in range(3))
         text = f"[compute]\nshader = 'sum.comp'\n[launch]\ngroups = 1\n{tables}[[buffer]]\nbinding = 1\ncount = 4\nsave = 'out.csv'\n"
         self.glint(self.write("p.toml", text))
-        self.assertEqual(self.numbers(), [4000, 5011, 6022, 4003])
+        self.assertEqual(self.saved_numbers(), [4000, 5011, 6022, 4003])
         done = self.glint(self.write("p.toml", text.replace("element = 1\n", "element = 3\n")), code=2)
         self.assertIn("element 3 of set 0 binding 0: the shader's array has 3", done.stderr)
         self.assertIn("sum.comp:4", done.stderr)
@@ -235,7 +232,7 @@ class Files(RulesTest):
             self.glint(self.write("p.toml", f"[compute]\nshader = 'count.comp'\n[launch]\ngroups = 1\n[[buffer]]\nbinding = 0\ntype = 's32'\ncount = 4\nsave = '{name}'\n"))
             data = (self.folder / "out" / name).read_bytes()
             if name == "y.csv":
-                self.assertEqual(self.numbers(name), [-2, -1, 0, 1])
+                self.assertEqual(self.saved_numbers(name), [-2, -1, 0, 1])
             else:
                 self.assertEqual(struct.unpack("<4i", data[-16:]), (-2, -1, 0, 1))
                 self.assertEqual(len(data) == 16, name == "y.raw")

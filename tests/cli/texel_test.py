@@ -158,19 +158,19 @@ class Texels(GlintTest):
 
     def test_images_of_every_shape_hold_the_texels_of_the_file_far_up_in_their_sets(self):
         self.run_text(0, [], LOOK_FILE)
-        self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [40, 3, 6, 4.5, 7, 10, 9])
+        self.assertEqual(self.saved_numbers(), [40, 3, 6, 4.5, 7, 10, 9])
 
     def test_samples_of_a_texel_are_layers_and_only_where_the_shader_has_them(self):
         self.write("samples.comp", SAMPLES)
         self.run_text(0, [], SAMPLES_FILE)
-        self.assertEqual([float(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [205, 206, 207, 208])
+        self.assertEqual(self.saved_numbers(), [205, 206, 207, 208])
         self.refused("size = [1, 1]\nlayers = 6", "size = [1, 1]\nlayers = 6\nsamples = 2", "image 'image_3_201'", "samples per texel, and the shader's has one")
 
     def test_images_of_integers_take_the_nearest_texel_and_borders_of_integers(self):
         self.write("integers.comp", INTEGERS)
         self.run_text(0, [], INTEGERS_FILE)
         rows = [7, 2**32 - 1, 2**24 + 1, 10, -7, -8, 0, 1, 5, 6, 7, 8, -1, 2, 0, 1]
-        self.assertEqual([int(v) for v in (self.folder / "out/out.csv").read_text().split()[1:]], [v % 2**32 for v in rows])
+        self.assertEqual(self.saved_numbers(number=int), [v % 2**32 for v in rows])
         self.run_text(2, ["p.toml:11:1: error: 'border' has 5 numbers, expected up to four"], INTEGERS_FILE.replace("16777217, 10]", "16777217, 10, 11]"))
         self.assertEqual(self.glint("init", "new.toml", "integers.comp").returncode, 0)
         self.assertEqual((self.folder / "new.toml").read_text().count('filter = "nearest"'), 2)
