@@ -39,8 +39,11 @@ std::vector<tinyobj::material_t> read_materials(std::span<const ObjChunk> chunks
                                                 std::vector<int32_t>& material_of) {
   // The library reads these lines with one face after each, which then has the material.
   std::string text = "v 0 0 0\nf 1 1 1\n";
-  for (const ObjChunk& chunk : chunks)
+  size_t faces = 1;
+  for (const ObjChunk& chunk : chunks) {
     for (const ObjMaterialLine& line : chunk.material_lines) text.append(line.text).append("\nf 1 1 1\n");
+    faces += chunk.material_lines.size();
+  }
   std::istringstream stream(text);
   std::istringstream own(
       parts.empty() ? "" : read_regular_file(fs::path(path).replace_extension(".mtl").string()).value_or(""));
@@ -61,6 +64,10 @@ std::vector<tinyobj::material_t> read_materials(std::span<const ObjChunk> chunks
                     "put the .mtl file beside the .obj file");
   for (const tinyobj::shape_t& shape : shapes)
     for (const int material : shape.mesh.material_ids) material_of.push_back(std::max(0, material));
+  // A later version of the library may join lines that end with a backslash.
+  if (material_of.size() != faces)
+    throw UserError({path}, "a line \"usemtl\" or \"mtllib\" of this OBJ file cannot be read",
+                    "expected the name of a material or of its library alone in such a line");
   return materials;
 }
 
