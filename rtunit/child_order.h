@@ -1,12 +1,23 @@
 // Declares the interface of the policies that choose the order in which a ray visits the children of a node.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "base/registry.h"
+#include "rtunit/intersection/ray_space.h"
 #include "rtunit/structure/structure.h"
+#include "rtunit/traversal/ray.h"
 
 namespace glint::rt {
+
+// Shows an order the ray that visits a node.
+struct RayView {
+  const Ray& ray;          // as the shader handed it over, with its flags; it is in world space
+  const RaySpace& space;   // the ray in the space of the node's boxes
+  float t_max;             // distance of the hit so far, or where the ray ends
+  bool ends_at_first_hit;  // The first hit that is found ends the ray, so any hit is as good as the nearest.
+};
 
 // Lists the children of one node that the ray enters, in index order.
 struct ChildHits {
@@ -15,11 +26,19 @@ struct ChildHits {
   const NodeRef* child = nullptr;
   const uint8_t* slot = nullptr;  // where each lies in the node
   uint32_t octant = 0;            // bit a: the ray's direction along axis a is negative
+  const RayView* ray = nullptr;
+  // Holds the node's bytes, and what reads boxes from them. Only an order that calls boxes() pays for them.
+  const std::byte* node = nullptr;
+  void (*read_boxes)(const ChildHits& hits, Bounds* out) = nullptr;
+
+  // Writes the box of each of the `count` children to `out`, as the traversal sees it.
+  void boxes(Bounds* out) const { read_boxes(*this, out); }
 };
 
 // Contract (tests/contract/rt_child_order_test.cpp):
 //  - sort() writes each of 0 .. hits.count - 1 to `order` once; order[0] is the child to be visited first.
 //  - The choice depends on the argument alone: an order has no state and serves all rays.
+//  - sort() may rely on every member of `hits`; nearest_first() reads `count` and `t_enter` only.
 class ChildOrder {
  public:
   static constexpr PolicyKind kKind{"rt.child_order", "rtunit/child_orders"};

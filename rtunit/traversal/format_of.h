@@ -60,10 +60,21 @@ inline uint32_t octant_of(const RaySpace& space) {
   return out;
 }
 
-// Pushes the children in the order that the ray's rules say.
+// Writes the boxes of the children that are hit. Both lists of children are in the order of the node.
 template <class Format>
-void push_by_rules(RayState& s, uint32_t entered, const float* t_enter,
-                   const typename Format::References& child) {
+void read_boxes(const ChildHits& hits, Bounds* out) {
+  static const Format format({}, {});
+  DecodedChild decoded[Format::kWidth];
+  const uint32_t count = format.decode(hits.node, decoded);
+  int at = 0;
+  for (uint32_t i = 0; i < count && at < hits.count; ++i)
+    if (decoded[i].node == hits.child[at]) out[at++] = decoded[i].bounds;
+}
+
+// Pushes the children in the order that `sort` says.
+template <class Format, class Sort>
+void push_sorted(RayState& s, uint32_t entered, const float* t_enter,
+                 const typename Format::References& child, Sort&& sort) {
   float t[Format::kWidth];
   NodeRef node[Format::kWidth];
   uint8_t slot[Format::kWidth];
@@ -75,25 +86,48 @@ void push_by_rules(RayState& s, uint32_t entered, const float* t_enter,
     slot[hits] = uint8_t(i);
   }
   uint8_t order[Format::kWidth];
-  if (!s.rules.order)
-    nearest_first({hits, t, node, slot, 0}, order);
-  else
-    s.rules.order->sort({hits, t, node, slot, octant_of(s.space)}, order);
+  sort(ChildHits{hits, t, node, slot}, order);
   for (int i = hits - 1; i >= 0; --i) push(s, node[order[i]], t[order[i]]);  // The first is on top.
+}
+
+// Returns the children that the ray enters, and writes where it enters each of them to `t_enter`.
+template <class Format>
+[[gnu::always_inline]] inline uint32_t entered_children(RayState& s, const std::byte* bytes, float* t_enter) {
+  const uint32_t entered = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, s.box_tests);
+  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs)) [[unlikely]]
+    return without_skipped(s, entered, typename Format::References(bytes));
+  return entered;
+}
+
+// Visits a node whose children the ray's rules order. It is a function of its own, so that visit_internal()
+// stays as small as it is without such rules.
+template <class Format>
+[[gnu::noinline]] void visit_by_order(RayState& s, const std::byte* bytes) {
+  alignas(Four) float t_enter[Format::kPlanes];
+  const uint32_t entered = entered_children<Format>(s, bytes, t_enter);
+  push_sorted<Format>(s, entered, t_enter, typename Format::References(bytes),
+                      [&](ChildHits hits, uint8_t* order) {
+                        const RayView ray{s.ray, s.space, s.committed.t, ends_at_first_hit(s)};
+                        hits.octant = octant_of(s.space);
+                        hits.ray = &ray;
+                        hits.node = bytes;
+                        hits.read_boxes = read_boxes<Format>;
+                        s.rules.order->sort(hits, order);
+                      });
 }
 
 template <class Format>
 void visit_internal(RayState& s, const std::byte* bytes) {
+  if (s.rules.order) [[unlikely]]
+    return visit_by_order<Format>(s, bytes);
   alignas(Four) float t_enter[Format::kPlanes];
-  uint32_t entered = Format::test(bytes, s.space, s.ray.t_min, s.committed.t, t_enter, s.box_tests);
+  const uint32_t entered = entered_children<Format>(s, bytes, t_enter);
   const typename Format::References child(bytes);
-  if (has(s, ray_flag::kSkipTriangles | ray_flag::kSkipAabbs)) [[unlikely]]
-    entered = without_skipped(s, entered, child);
   StackEntry* top = s.stack.near_room(size_t(s.stack_size), Format::kWidth);
-  if (top && !s.rules.order && !s.path) [[likely]]
+  if (top && !s.path) [[likely]]
     push_nearest_first(s, top, entered, t_enter, child);
   else
-    push_by_rules<Format>(s, entered, t_enter, child);
+    push_sorted<Format>(s, entered, t_enter, child, nearest_first);
 }
 
 // Notes the node that is about to be visited as the last of its depth.
