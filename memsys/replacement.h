@@ -25,9 +25,11 @@ struct CacheLine {
 //
 // Contract (tests/contract/memsys/replacement_test.cpp):
 //  - victim() returns a slot of the set whose line is not held, or kNone when every line of the set is held.
-//  - victim() changes nothing: it returns the same slot again until a call reports an event of the set.
-//  - The answer depends on the lines and the events of the set only. One set never changes the choice in
-//    another set, and no thread or window changes any choice.
+//  - victim() changes nothing: it returns the same slot again until a call reports an event.
+//  - The answer depends on the lines of the set and on the events of the cache, in their order. Sets may
+//    share state, as they do in set duelling: one cell of the engine owns a cache, so that neither threads
+//    nor windows change the order of its events. A policy whose sets share nothing depends on the events of
+//    the set alone.
 //  - The policy allocates nothing after its construction.
 class Replacement {
  public:

@@ -9,6 +9,7 @@
 
 #include "base/registry.h"
 #include "memsys/cache/tag_array.h"
+#include "memsys/replacement/set_duel.h"
 #include "tests/support/catch.h"
 #include "tests/support/memory_rig.h"
 
@@ -109,7 +110,7 @@ using Lines = std::vector<Address>;
 
 TEST_CASE("every replacement policy names a line of the set that is not held, or none when all are held") {
   REQUIRE(Registry<Replacement>::names() ==
-          std::vector<std::string>{"fifo", "lru", "plru", "random", "srrip"});
+          std::vector<std::string>{"drrip", "fifo", "lru", "plru", "random", "srrip"});
   for (const std::string& name : Registry<Replacement>::names())
     for (const uint32_t ways : {1u, 2u, 6u, 16u, 33u}) {
       CAPTURE(name, ways);
@@ -118,16 +119,22 @@ TEST_CASE("every replacement policy names a line of the set that is not held, or
     }
 }
 
-TEST_CASE("with every replacement policy, a set's victims depend on nothing but the events of the set") {
+TEST_CASE("with every replacement policy, a set's victims depend on nothing but the events of the cache") {
   for (const std::string& name : Registry<Replacement>::names()) {
     CAPTURE(name);
-    Cache alone(name, 4, 6), again(name, 4, 6), among_others(name, 4, 6);
-    std::mt19937 random(3);
-    const std::vector<uint32_t> plain = exercise(alone, 2, 11, [] {});
-    CHECK(plain == exercise(again, 2, 11, [] {}));
-    CHECK(plain ==
-          exercise(among_others, 2, 11, [&] { random_event(among_others, random() % 2 ? 1 : 3, random); }));
+    const auto among_others = [&](Cache& cache) {
+      std::mt19937 random(3);
+      return exercise(cache, 4, 11, [&] { random_event(cache, random() % 2 ? 0 : 3, random); });
+    };
+    Cache alone(name, 5, 6), again(name, 5, 6), crowded(name, 5, 6), crowded_again(name, 5, 6);
+    const std::vector<uint32_t> plain = exercise(alone, 4, 11, [] {});
+    CHECK(plain == exercise(again, 4, 11, [] {}));
     CHECK(plain != exercise(again, 1, 12, [] {}));
+    const std::vector<uint32_t> among = among_others(crowded);
+    CHECK(among == among_others(crowded_again));
+    // Only a policy whose sets share state chooses otherwise because of another set. In its duel, sets 0 and
+    // 2 lead for one side, 1 and 3 for the other, and set 4 follows.
+    CHECK((among == plain) == (name != "drrip"));
   }
 }
 
@@ -234,6 +241,54 @@ TEST_CASE("srrip takes a line that lost its sectors first, and ages no other lin
   tags.insert(384).valid = 1;  // has the value 2, like 128 and 256
   tags.touch(tags.find(128));
   CHECK(tags.victim(512).address() == 384);  // is in the lower slot of two lines with the value 2
+}
+
+TEST_CASE("drrip with one set is srrip, and a cache of lines that come round keeps some of them by brrip") {
+  const Lines reads{0, 1, 2, 3, 0, 1, 4, 5, 6, 7, 2, 3, 0};
+  CHECK(victims(chosen("drrip"), 4, reads) == victims(chosen("srrip"), 4, reads));
+  // 80 sets of 4 ways read 480 lines in turn. SRRIP has left each before it comes again.
+  const auto hits = [&](const std::string& name, const std::string& params = {}) {
+    TagArray tags({80, 4, 128}, chosen(name, params));
+    int count = 0;
+    for (int round = 0; round < 40; ++round)
+      for (Address line = 0; line < 480 * 128; line += 128) {
+        const uint32_t slot = tags.find(line);
+        if (slot == TagArray::kNone)
+          tags.insert(line).valid = 1;
+        else
+          tags.touch(slot), ++count;
+      }
+    return count;
+  };
+  CHECK(hits("lru") < 2 * hits("drrip"));
+  CHECK(hits("srrip") < hits("drrip"));
+  CHECK(hits("drrip", "rare = 1\n") == hits("srrip"));  // Then the second policy is the first.
+}
+
+TEST_CASE(
+    "a set duel has as many leaders of either policy as asked for, and the others follow the better one") {
+  for (const uint32_t sets : {1u, 2u, 3u, 4u, 64u, 100u, 1024u}) {
+    CAPTURE(sets);
+    SetDuel duel(sets, 32, 4);
+    const auto seconds = [&] {
+      uint32_t count = 0;
+      for (uint32_t set = 0; set < sets; ++set) count += duel.uses_second(set);
+      return count;
+    };
+    const uint32_t leaders = std::min(32u, sets / 2);
+    CHECK(seconds() == leaders);  // At first the others follow the first policy.
+    // Each set misses once, and those of the two policies weigh each other out.
+    for (uint32_t set = 0; set < sets; ++set) duel.missed(set);
+    CHECK(seconds() == leaders);
+    for (uint32_t i = 0; i < 20; ++i)
+      for (uint32_t set = 0; set < sets; ++set)
+        if (!duel.uses_second(set)) duel.missed(set);
+    CHECK(seconds() == (leaders ? sets - leaders : 0));
+    for (uint32_t i = 0; i < 20; ++i)
+      for (uint32_t set = 0; set < sets; ++set)
+        if (duel.uses_second(set)) duel.missed(set);
+    CHECK(seconds() == leaders);
+  }
 }
 
 TEST_CASE("random draws every way about as often, another seed draws another sequence") {
