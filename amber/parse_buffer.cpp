@@ -148,7 +148,8 @@ void load_picture(Parsing& p, Buffer& buffer, const Contents& contents) {
   pipeline::ImageDescription description;
   description.name = buffer.name, description.files = {p.beside(contents.file)},
   description.format = buffer.type.format, description.where = buffer.where;
-  pipeline::Picture picture = pipeline::make_picture(description, isa::ImageShape::D2, "", {1, 1, 1});
+  const pipeline::PictureMaker maker({&description, 1}, 1);
+  pipeline::Picture picture = maker.make(description, {}, {1, 1, 1});
   buffer.size = {picture.view.width, picture.view.height, 1};
   buffer.elements = uint64_t{buffer.size[0]} * buffer.size[1];
   buffer.bytes = std::move(picture.texels);

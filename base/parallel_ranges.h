@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/check.h"
+
 namespace glint {
 
 // Cuts [0, count) into ranges of `range` things, of which the last may be shorter, and calls work(begin, end)
@@ -18,6 +20,7 @@ namespace glint {
 // leaves.
 template <class Work>
 void parallel_ranges(size_t count, size_t range, uint32_t threads, const Work& work) {
+  GLINT_CHECK(threads > 0, "no threads for work; host_threads() says how many stand for 0");
   const size_t ranges = (count + range - 1) / range;
   std::atomic<size_t> next = 0;
   std::mutex mutex;  // of the following

@@ -14,10 +14,12 @@ struct ImageView {
   std::span<const float> rgba;     // width * height * 4
 };
 
+// Each function works on up to `threads` threads of the host, which do not show in the bytes.
+
 // Returns three channels of 8 bits: round(255 * clamp(value, 0, 1)). A value that is not a number becomes 0.
-std::string png_bytes(const ImageView& image);
+std::string png_bytes(const ImageView& image, uint32_t threads = 1);
 
 // Returns "PF" and three little-endian floats per pixel, with the bottom row first. Values are not clamped.
-std::string pfm_bytes(const ImageView& image);
+std::string pfm_bytes(const ImageView& image, uint32_t threads = 1);
 
 }  // namespace glint::pictures

@@ -73,7 +73,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   for (const LaunchDescription& launch : description_.launches) link(launch, gpu);
   for (const Built& launch : launches_) set_size(launch);
   upload_buffers();
-  upload_images();
+  upload_images(threads);
   add_samplers();
   const uint32_t stack_need = build_structures(gpu, threads);
   for (const Built& launch : launches_) {
@@ -171,19 +171,20 @@ void PipelineWorld::upload_buffers() {
     for (const auto& [place, elements] : bound.all) launch.builder->bind_buffers(place, elements);
 }
 
-void PipelineWorld::upload_images() {
+void PipelineWorld::upload_images(uint32_t threads) {
   const std::vector<ImageDescription>& all = description_.images;
   images_.resize(all.size());
   Elements<exec::ImageView> bound;
+  const PictureMaker maker(all, threads);
   for (size_t i : in_order(all)) {
     const ImageDescription& d = all[i];
     const BindingUse* use = use_of(d.slot);
     if (use && d.samples > 1 && !use->binding.multisampled)
       throw UserError(d.where, fmt::format("image '{}' has {} samples per texel, and the shader's has one",
                                            d.name, d.samples));
-    Picture picture =
-        make_picture(d, use ? use->binding.shape : isa::ImageShape::D2, use ? use->binding.texel : "",
-                     world().launch_size, use ? use->binding.format : "");
+    DeclaredImage declared;
+    if (use) declared = {use->binding.shape, use->binding.texel, use->binding.format};
+    Picture picture = maker.make(d, declared, world().launch_size);
     picture.view.base = memory_.allocate(title(d.name, d.slot), picture.texels.size());
     memory_.write(picture.view.base, picture.texels.data(), picture.texels.size());
     images_[i] = picture.view;

@@ -21,9 +21,9 @@ namespace glint::pipeline {
 // each other. It cannot be moved, because the worlds point into it.
 class PipelineWorld {
  public:
-  // Reads meshes and builds structures on up to `threads` threads of the host, which show in nothing. Throws
-  // UserError that lists what is wrong with the description, or UnsupportedError for what a shader uses and
-  // Glint lacks.
+  // Reads meshes and pictures and builds structures on up to `threads` threads of the host, which show in
+  // nothing. Throws UserError that lists what is wrong with the description, or UnsupportedError for what a
+  // shader uses and Glint lacks.
   PipelineWorld(const PipelineDescription& description, const GpuParams& gpu, uint32_t threads = 1);
   PipelineWorld(const PipelineWorld&) = delete;
   PipelineWorld& operator=(const PipelineWorld&) = delete;
@@ -54,7 +54,7 @@ class PipelineWorld {
   uint32_t number_of(const Built& launch, const std::string& shader) const;
   void set_size(const Built& launch);
   void upload_buffers();
-  void upload_images();
+  void upload_images(uint32_t threads);
   void add_samplers();
   uint32_t build_structures(const GpuParams& gpu, uint32_t threads);
   void fill_records(const Built& launch);

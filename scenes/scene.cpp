@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/host_threads.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/instancing.h"
 #include "scenes/lumibench/builders.h"
@@ -226,7 +227,9 @@ bool has_original(const std::string& name, const std::string& assets) {
   return assets.empty() || entry.originals.empty() || !find_original(entry, assets).empty();
 }
 
-Scene load_scene(const std::string& name, const LoadOptions& options) {
+Scene load_scene(const std::string& name, const LoadOptions& given) {
+  LoadOptions options = given;
+  options.threads = host_threads(given.threads);
   const Entry* entry = names_scene_file(name) ? nullptr : &entry_of(name);
   Scene scene = entry ? build_scene(*entry, options) : load_scene_file(name, options);
   name_materials(scene);

@@ -107,8 +107,8 @@ struct Scene {
   uint64_t stored_triangles() const;  // triangles of the models, each counted once
   double fraction() const;            // share of the original's triangles; 1 when there is no original
   uint64_t procedurals() const;
-  // Returns a hash of everything that reaches a shader, on up to `threads` threads of the host. It is the
-  // same at any number of threads, in every run and on every machine.
+  // Returns a hash of everything that reaches a shader, on up to `threads` threads of the host (0: one for
+  // each processor). It is the same at any number of threads, in every run and on every machine.
   uint64_t hash(uint32_t threads = 1) const;
 };
 
@@ -120,11 +120,13 @@ std::vector<Instance> instances_of(const Scene& scene);
 float diagonal(const Scene& scene);
 
 struct LoadOptions {
-  std::string assets;       // folder of original data; empty: there is none
+  std::string assets = {};  // folder of original data; empty: there is none
   bool instancing = false;  // Models that are affine copies of an earlier one become instances of it.
   // It is called while a scene is loaded or generated, and may be empty.
   std::function<void(double fraction)> progress = {};
-  uint32_t threads = 1;  // threads of the host that read or make large meshes; they do not show in the scene
+  // Up to this many threads of the host read or make a scene, and 0 stands for one for each processor. They
+  // do not show in it.
+  uint32_t threads = 1;
   // Scene::motion is wanted. Skins and morph targets of a glTF file are then read, too, and a file is in its
   // pose at time 0.
   bool moving = false;

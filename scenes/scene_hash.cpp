@@ -4,6 +4,7 @@
 #include <bit>
 #include <vector>
 
+#include "base/host_threads.h"
 #include "base/parallel_ranges.h"
 #include "scenes/scene.h"
 
@@ -129,7 +130,7 @@ uint64_t Scene::hash(uint32_t threads) const {
   content.add(uint64_t{alpha_test});
 
   std::vector<uint64_t> hashes(parts.size());
-  parallel_ranges(parts.size(), 4, threads, [&](size_t begin, size_t end) {
+  parallel_ranges(parts.size(), 4, host_threads(threads), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) hashes[i] = hash_of(parts[i]);
   });
   for (const uint64_t hash : hashes) content.add(hash);

@@ -6,9 +6,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <optional>
+#include <utility>
 
+#include "base/parallel_ranges.h"
 #include "pictures/decode.h"
 #include "pipeline/description/data.h"
 
@@ -19,39 +22,41 @@ using exec::TexelFormat;
 using isa::ImageShape;
 using Texel = std::array<double, 4>;  // floats, or integers when the format has them
 
-struct Layer {
-  uint32_t width = 0, height = 0;
-  bool is_float = false;
-  std::vector<Texel> texels;
-};
-
-pictures::DecodedPicture load(const std::string& path, const SourceLocation& where) {
-  pictures::DecodedPicture picture = pictures::decode_picture_file(path);
-  if (!picture.error.empty())
-    throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
-  return picture;
-}
-
-// Returns a file's texels. Those of 8-bit files become values of 0 to 1, unless the format keeps integers.
-Layer layer_of(const pictures::DecodedPicture& picture, bool as_integers) {
-  Layer out;
-  out.width = picture.width, out.height = picture.height;
-  out.is_float = !picture.floats.empty();
-  out.texels.resize(size_t(picture.width) * picture.height);
-  const auto take = [&](const auto& data, double scale) {
-    for (size_t i = 0; i < out.texels.size(); ++i)
-      for (size_t c = 0; c < 4; ++c) out.texels[i][c] = double(data[i * 4 + c]) * scale;
-  };
-  if (out.is_float)
-    take(picture.floats, 1.0);
-  else
-    take(picture.bytes, as_integers ? 1.0 : 1.0 / 255);
-  return out;
-}
+constexpr size_t kTexelsOfRange = 1 << 14;  // texels that a thread converts at a time
 
 // Converts encoded values of sRGB files to the linear ones that the format's encode() takes (IEC 61966-2-1).
 double to_linear(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+// Holds what the bytes of a file stand for: values of 0 to 1, or integers if the format keeps them.
+struct ByteValues {
+  std::array<double, 256> color, alpha;
+  explicit ByteValues(const exec::FormatInfo& info) {
+    for (size_t byte = 0; byte < color.size(); ++byte) {
+      alpha[byte] = exec::is_integer(info) ? double(byte) : double(byte) * (1.0 / 255);
+      color[byte] = info.numeric == exec::Numeric::Srgb ? to_linear(alpha[byte]) : alpha[byte];
+    }
+  }
+};
+
+// Returns whether texels of a format are the four bytes that pictures have.
+bool keeps_bytes(TexelFormat format) {
+  return format == TexelFormat::Rgba8Unorm || format == TexelFormat::Rgba8Srgb;
+}
+
+// Writes a file's texels.
+void take_texels(const pictures::DecodedPicture& picture, const exec::FormatInfo& info, uint32_t threads,
+                 Texel* to) {
+  const ByteValues values(info);
+  const auto take = [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (size_t c = 0; c < 4; ++c)
+        to[i][c] = !picture.floats.empty() ? double(picture.floats[i * 4 + c])
+                   : c < 3                 ? values.color[picture.bytes[i * 4 + c]]
+                                           : values.alpha[picture.bytes[i * 4 + c]];
+  };
+  parallel_ranges(size_t{picture.width} * picture.height, kTexelsOfRange, threads, take);
 }
 
 Texel made_up(const ImageDescription& image, uint32_t x, uint32_t y, uint32_t z, RandomNumbers& random) {
@@ -105,25 +110,29 @@ exec::Words words_of(const Texel& texel, const exec::FormatInfo& info) {
 }
 
 // Returns the means of the texels above, two in each direction that halves.
-std::vector<Texel> halved(const std::vector<Texel>& above, const exec::ImageView& view, uint32_t level) {
+std::vector<Texel> halved(const std::vector<Texel>& above, const exec::ImageView& view, uint32_t level,
+                          uint32_t threads) {
   const uint32_t w = view.extent(0, level), h = view.extent(1, level), d = view.extent(2, level);
   const uint32_t aw = view.extent(0, level - 1), ah = view.extent(1, level - 1),
                  ad = view.extent(2, level - 1);
-  std::vector<Texel> out;
-  for (uint32_t layer = 0; layer < view.layers; ++layer)
-    for (uint32_t z = 0; z < d; ++z)
-      for (uint32_t y = 0; y < h; ++y)
-        for (uint32_t x = 0; x < w; ++x) {
-          Texel sum{};
-          for (uint32_t corner = 0; corner < 8; ++corner) {
-            const uint32_t sx = std::min(2 * x + (corner & 1), aw - 1),
-                           sy = std::min(2 * y + (corner >> 1 & 1), ah - 1),
-                           sz = std::min(2 * z + (corner >> 2), ad - 1);
-            for (size_t c = 0; c < 4; ++c)
-              sum[c] += above[((size_t{layer} * ad + sz) * ah + sy) * aw + sx][c] / 8;
-          }
-          out.push_back(sum);
-        }
+  const size_t rows = size_t{view.layers} * d * h;
+  std::vector<Texel> out(rows * w);
+  const auto fill = [&](size_t row) {
+    const size_t y = row % h, z = row / h % d, layer = row / h / d;
+    for (uint32_t x = 0; x < w; ++x) {
+      Texel sum{};
+      for (uint32_t corner = 0; corner < 8; ++corner) {
+        const size_t sx = std::min(2 * x + (corner & 1), aw - 1),
+                     sy = std::min<size_t>(2 * y + (corner >> 1 & 1), ah - 1),
+                     sz = std::min<size_t>(2 * z + (corner >> 2), ad - 1);
+        for (size_t c = 0; c < 4; ++c) sum[c] += above[((layer * ad + sz) * ah + sy) * aw + sx][c] / 8;
+      }
+      out[row * w + x] = sum;
+    }
+  };
+  parallel_ranges(rows, 1 + kTexelsOfRange / w, threads, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row) fill(row);
+  });
   return out;
 }
 
@@ -156,6 +165,39 @@ void check_shape(const ImageDescription& image, const exec::ImageView& view) {
                                 view.width, view.height, view.depth, view.layers, wrong));
 }
 
+// Returns the format of an image. The first file says which one an image has that names none.
+TexelFormat format_of(const ImageDescription& image, const DeclaredImage& declared,
+                      std::span<const pictures::DecodedPicture* const> files) {
+  const TexelFormat widest = declared.texel == "u32"   ? TexelFormat::Rgba32Uint
+                             : declared.texel == "s32" ? TexelFormat::Rgba32Sint
+                                                       : TexelFormat::Rgba32Float;
+  if (image.format) return *image.format;
+  if (files.empty()) return format_named(declared.format).value_or(widest);
+  return files[0]->floats.empty() && widest == TexelFormat::Rgba32Float ? TexelFormat::Rgba8Unorm : widest;
+}
+
+// Sets how large the image is: as its files are, or as it says.
+void size_image(const ImageDescription& image, std::span<const pictures::DecodedPicture* const> files,
+                std::array<uint32_t, 3> fallback, exec::ImageView& view) {
+  if (files.empty()) {
+    const std::array<uint32_t, 3> size = image.size[0] ? image.size : fallback;
+    view.width = size[0];
+    view.height = isa::num_coordinates(view.shape) > 1 || image.size[0] ? size[1] : 1;
+    view.depth = view.shape == ImageShape::D3 || image.size[0] ? size[2] : 1;
+    return;
+  }
+  view.width = files[0]->width, view.height = files[0]->height;
+  if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height))
+    throw UserError(image.where,
+                    fmt::format("the file of image '{}' is {} x {}, and 'size' says {} x {}", image.name,
+                                view.width, view.height, image.size[0], image.size[1]));
+  if (files.size() != view.layers)
+    throw UserError(image.where,
+                    fmt::format("image '{}' names {} files and has {} layers of {} samples; each sample of a "
+                                "layer takes a file",
+                                image.name, files.size(), image.layers, image.samples));
+}
+
 // Returns how an image of integers is sampled. Texels of integers cannot be filtered.
 exec::Sampler sampler_of_integers(const ImageDescription& image) {
   exec::Sampler out = image.sampler;
@@ -167,59 +209,70 @@ exec::Sampler sampler_of_integers(const ImageDescription& image) {
 
 }  // namespace
 
-Picture make_picture(const ImageDescription& image, ImageShape shape, const std::string& texel,
-                     std::array<uint32_t, 3> fallback, const std::string& declared) {
+PictureMaker::PictureMaker(std::span<const ImageDescription> images, uint32_t threads) : threads_(threads) {
+  for (const ImageDescription& image : images)
+    for (const std::string& file : image.files) files_.try_emplace(file);
+  std::vector<std::pair<const std::string, pictures::DecodedPicture>*> all;
+  for (auto& entry : files_) all.push_back(&entry);
+  parallel_ranges(all.size(), 1, threads,
+                  [&](size_t i, size_t) { all[i]->second = pictures::decode_picture_file(all[i]->first); });
+}
+
+const pictures::DecodedPicture& PictureMaker::file_of(const std::string& path,
+                                                      const SourceLocation& where) const {
+  const pictures::DecodedPicture& picture = files_.at(path);
+  if (!picture.error.empty())
+    throw UserError(where, fmt::format("cannot read the image '{}': {}", path, picture.error));
+  return picture;
+}
+
+Picture PictureMaker::make(const ImageDescription& image, const DeclaredImage& declared,
+                           std::array<uint32_t, 3> fallback) const {
   Picture out;
   exec::ImageView& view = out.view;
-  const TexelFormat widest = texel == "u32"   ? TexelFormat::Rgba32Uint
-                             : texel == "s32" ? TexelFormat::Rgba32Sint
-                                              : TexelFormat::Rgba32Float;
-  const TexelFormat plain = (image.files.empty() ? format_named(declared) : std::nullopt).value_or(widest);
-  // The first file says which format an image has that names none.
-  std::optional<pictures::DecodedPicture> first;
-  if (!image.files.empty()) first = load(image.files[0], image.where);
-  const bool has_floats = first && !first->floats.empty();
-  view.format = image.format.value_or(!image.files.empty() && !has_floats && texel != "u32" && texel != "s32"
-                                          ? TexelFormat::Rgba8Unorm
-                                          : plain);
+  std::vector<const pictures::DecodedPicture*> files;
+  for (const std::string& file : image.files) {
+    files.push_back(&file_of(file, image.where));
+    if (files.back()->width != files[0]->width || files.back()->height != files[0]->height)
+      throw UserError(image.where, fmt::format("'{}' is {} x {}, and the files before it are {} x {}", file,
+                                               files.back()->width, files.back()->height, files[0]->width,
+                                               files[0]->height));
+  }
+  view.format = format_of(image, declared, files);
   const exec::FormatInfo& info = exec::info_of(view.format);
-  check_format(image, info, texel);
-  view.name = image.name, view.shape = shape;
+  check_format(image, info, declared.texel);
+  view.name = image.name, view.shape = declared.shape;
   view.sampler = exec::is_integer(info) ? sampler_of_integers(image) : image.sampler;
   view.layers = image.layers * image.samples, view.samples = image.samples;
-  if (isa::is_cube(shape) && image.files.empty() && image.layers == 1) view.layers = 6;
-
-  std::vector<Texel> level;
-  for (const std::string& file : image.files) {
-    Layer layer = layer_of(first ? *first : load(file, image.where), exec::is_integer(info));
-    first.reset();
-    if (!level.empty() && (layer.width != view.width || layer.height != view.height))
-      throw UserError(image.where, fmt::format("'{}' is {} x {}, and the files before it are {} x {}", file,
-                                               layer.width, layer.height, view.width, view.height));
-    view.width = layer.width, view.height = layer.height;
-    if (info.numeric == exec::Numeric::Srgb && !layer.is_float)
-      for (Texel& t : layer.texels)
-        for (size_t c = 0; c < 3; ++c) t[c] = to_linear(t[c]);
-    level.insert(level.end(), layer.texels.begin(), layer.texels.end());
-  }
-  if (image.files.empty()) {
-    const std::array<uint32_t, 3> size = image.size[0] ? image.size : fallback;
-    view.width = size[0];
-    view.height = isa::num_coordinates(shape) > 1 || image.size[0] ? size[1] : 1;
-    view.depth = shape == ImageShape::D3 || image.size[0] ? size[2] : 1;
-    level = texels_without_files(image, view, info.channels);
-  } else if (image.size[0] && (image.size[0] != view.width || image.size[1] != view.height)) {
-    throw UserError(image.where,
-                    fmt::format("the file of image '{}' is {} x {}, and 'size' says {} x {}", image.name,
-                                view.width, view.height, image.size[0], image.size[1]));
-  }
+  if (isa::is_cube(view.shape) && files.empty() && image.layers == 1) view.layers = 6;
+  size_image(image, files, fallback, view);
   check_shape(image, view);
   if (image.mipmaps) view.levels = uint32_t(std::bit_width(std::max({view.width, view.height, view.depth})));
+
   out.texels.resize(view.bytes());
   std::byte* to = out.texels.data();
+  const size_t of_file = size_t{view.width} * view.height;
+  const auto has_bytes = [](const pictures::DecodedPicture* file) { return file->floats.empty(); };
+  const bool copies =
+      !files.empty() && keeps_bytes(view.format) && std::all_of(files.begin(), files.end(), has_bytes);
+  if (copies)
+    for (size_t i = 0; i < files.size(); ++i)
+      std::memcpy(to + i * of_file * 4, files[i]->bytes.data(), of_file * 4);
+  if (copies && view.levels == 1) return out;
+  std::vector<Texel> level;
+  if (files.empty())
+    level = texels_without_files(image, view, info.channels);
+  else
+    level.resize(files.size() * of_file);
+  for (size_t i = 0; i < files.size(); ++i) take_texels(*files[i], info, threads_, &level[i * of_file]);
   for (uint32_t l = 0; l < view.levels; ++l) {
-    if (l) level = halved(level, view, l);
-    for (const Texel& t : level) exec::encode(view.format, words_of(t, info), to), to += info.bytes;
+    if (l) level = halved(level, view, l, threads_);
+    if (l || !copies)
+      parallel_ranges(level.size(), kTexelsOfRange, threads_, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+          exec::encode(view.format, words_of(level[i], info), to + i * info.bytes);
+      });
+    to += level.size() * info.bytes;
   }
   return out;
 }

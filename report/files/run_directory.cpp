@@ -285,9 +285,9 @@ void RunDirectory::remove_results() const {
   fs::remove(folder, error);  // The folder stays when it holds files of others.
 }
 
-void RunDirectory::write_image(const pictures::ImageView& image) const {
-  write("image.png", pictures::png_bytes(image));
-  write("image.pfm", pictures::pfm_bytes(image));
+void RunDirectory::write_image(const pictures::ImageView& image, uint32_t threads) const {
+  write("image.png", pictures::png_bytes(image, threads));
+  write("image.pfm", pictures::pfm_bytes(image, threads));
 }
 
 void RunDirectory::write_stats(const stats::Group& root, bool compact) const {

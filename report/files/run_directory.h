@@ -154,7 +154,8 @@ class RunDirectory {
   // Removes the results that this run or an earlier one has left. config.toml, run.json and files of others
   // stay.
   void remove_results() const;
-  void write_image(const pictures::ImageView& image) const;  // image.png, image.pfm
+  // Writes image.png and image.pfm, which up to `threads` threads of the host encode.
+  void write_image(const pictures::ImageView& image, uint32_t threads) const;
   // Writes stats.<format> of every registered format, or, for RunInfo::compact, stats.csv with totals alone.
   void write_stats(const stats::Group& root, bool compact = false) const;
   // Writes config.toml, without comments for RunInfo::compact.

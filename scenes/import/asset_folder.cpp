@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "base/diagnostics.h"
+#include "base/ordered_work.h"
 #include "scenes/import/obj_loader.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/mesh.h"
@@ -60,25 +63,43 @@ std::map<std::string, Source> list_sources(const fs::path& folder) {
   return sources;
 }
 
+// Holds a model with its own materials and textures, all numbered from 0.
+struct LoadedModel {
+  Model model;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+};
+
+// Reads the files side by side, each on all threads if it is large, and appends the models in order.
 class FolderLoader {
  public:
-  FolderLoader(Scene& scene, const FolderRules& rules, fs::path folder, uint32_t threads)
+  FolderLoader(Scene& scene, const FolderRules& rules, fs::path folder, const LoadOptions& options)
       : scene_(scene),
         rules_(rules),
         folder_(std::move(folder)),
-        threads_(threads),
+        options_(options),
         sources_(list_sources(folder_)) {
+    std::set<std::string> wanted;
     for (const auto& [name, source] : sources_)
-      if (source.is_copy) wanted_.insert(source.file);
+      if (source.is_copy) wanted.insert(source.file);
+    const std::vector<std::string> files(wanted.begin(), wanted.end());
+    read(
+        files.size(), [&](size_t i) { return load(files[i]); },
+        [&](size_t i, LoadedModel base) { bases_[files[i]] = std::move(base); });
   }
 
-  uint64_t run(const LoadOptions& options) {
+  // Returns the number of models.
+  uint64_t run() {
+    std::vector<std::pair<std::string, Source>> sources;
+    for (const auto& entry : sources_)
+      if (rules_.skip.empty() || entry.first.find(rules_.skip) == std::string::npos) sources.push_back(entry);
     uint64_t models = 0;
-    size_t done = 0;
-    for (const auto& [name, source] : sources_) {
-      if (rules_.skip.empty() || name.find(rules_.skip) == std::string::npos) models += add(name, source);
-      if (options.progress) options.progress(double(++done) / double(sources_.size()));
-    }
+    read(
+        sources.size(), [&](size_t i) { return model_of(sources[i].first, sources[i].second); },
+        [&](size_t i, LoadedModel loaded) {
+          models += add(sources[i].first, std::move(loaded));
+          if (options_.progress) options_.progress(double(i + 1) / double(sources.size()));
+        });
     return models;
   }
 
@@ -91,53 +112,56 @@ class FolderLoader {
   }
 
  private:
-  bool add(const std::string& name, const Source& source) {
-    const size_t first = scene_.materials.size(), first_texture = scene_.textures.size();
-    Model model = source.is_copy ? copy(name, source) : load(source.file);
-    if (model.indices.empty()) {
-      scene_.materials.resize(first);
-      scene_.textures.resize(first_texture);
-      return false;
-    }
-    model.name = name;
+  template <class Make, class Take>
+  void read(size_t count, Make&& make, Take&& take) const {
+    OrderedWork<LoadedModel>(count, options_.threads).run(make, take);
+  }
+
+  LoadedModel load(const std::string& file) const {
+    LoadedModel out;
+    out.model =
+        load_obj((folder_ / file).string(), out.materials,
+                 {.textures = rules_.textures ? &out.textures : nullptr, .threads = options_.threads});
+    return out;
+  }
+
+  LoadedModel model_of(const std::string& name, const Source& source) const {
+    const auto base = bases_.find(source.file);
+    LoadedModel out = base == bases_.end() ? load(source.file)
+                      : source.is_copy     ? copy(name, base->second.model, source.matrix)
+                                           : base->second;
+    out.model.name = name;
     if (rules_.scale != 1)
-      for (Vertex& vertex : model.vertices) vertex.position = vertex.position * rules_.scale;
-    scene_.models.push_back(std::move(model));
-    recolor(name, std::span(scene_.materials).subspan(first));
+      for (Vertex& vertex : out.model.vertices) vertex.position = vertex.position * rules_.scale;
+    return out;
+  }
+
+  // Returns a moved copy, which has the materials of its own library.
+  LoadedModel copy(const std::string& name, const Model& base, const Affine& matrix) const {
+    LoadedModel out;
+    out.materials = load_materials((folder_ / (name + ".mtl")).string());
+    if (out.materials.empty()) out.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
+    append_copy(out.model, base, matrix, -1);
+    const auto last = int32_t(out.materials.size()) - 1;
+    for (Vertex& vertex : out.model.vertices) vertex.material = std::min(vertex.material, last);
+    return out;
+  }
+
+  // Returns whether the model has triangles, and has become one of the scene.
+  bool add(const std::string& name, LoadedModel loaded) {
+    if (loaded.model.indices.empty()) return false;
+    const auto first = int32_t(scene_.materials.size()), first_texture = int32_t(scene_.textures.size());
+    for (Vertex& vertex : loaded.model.vertices) vertex.material += first;
+    for (Material& material : loaded.materials)
+      if (material.texture >= 0) material.texture += first_texture;
+    recolor(name, loaded.materials);
+    scene_.models.push_back(std::move(loaded.model));
+    scene_.materials.insert(scene_.materials.end(), loaded.materials.begin(), loaded.materials.end());
+    std::move(loaded.textures.begin(), loaded.textures.end(), std::back_inserter(scene_.textures));
     return true;
   }
 
-  Model load(const std::string& file) {
-    const size_t first = scene_.materials.size();
-    Model model = load_obj((folder_ / file).string(), scene_.materials,
-                           {.textures = rules_.textures ? &scene_.textures : nullptr, .threads = threads_});
-    if (wanted_.contains(file)) keep(file, model, int32_t(first));
-    return model;
-  }
-
-  // Keeps a model as the base of copies. The material indices of a base count from 0.
-  void keep(const std::string& file, const Model& model, int32_t first) {
-    Model& base = bases_[file] = model;
-    for (Vertex& vertex : base.vertices) vertex.material -= first;
-  }
-
-  Model copy(const std::string& name, const Source& source) {
-    if (!bases_.contains(source.file)) {
-      std::vector<Material> unused;
-      keep(source.file, load_obj((folder_ / source.file).string(), unused, {.threads = threads_}), 0);
-    }
-    const auto first = int32_t(scene_.materials.size());
-    const std::vector<Material> own = load_materials((folder_ / (name + ".mtl")).string());
-    scene_.materials.insert(scene_.materials.end(), own.begin(), own.end());
-    if (own.empty()) scene_.materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
-    const auto last = int32_t(scene_.materials.size()) - 1;
-    Model model;
-    append_copy(model, bases_[source.file], source.matrix, -1);
-    for (Vertex& vertex : model.vertices) vertex.material = std::min(first + vertex.material, last);
-    return model;
-  }
-
-  void recolor(const std::string& name, std::span<Material> materials) {
+  void recolor(const std::string& name, std::span<Material> materials) const {
     const auto contains = [&](const std::string& part) { return name.find(part) != std::string::npos; };
     for (const NameRule& rule : rules_.colors)
       if (std::any_of(rule.parts.begin(), rule.parts.end(), contains)) {
@@ -149,11 +173,10 @@ class FolderLoader {
 
   Scene& scene_;
   const FolderRules& rules_;
-  fs::path folder_;
-  const uint32_t threads_;  // of the host
-  std::map<std::string, Source> sources_;
-  std::set<std::string> wanted_;
-  std::map<std::string, Model> bases_;
+  const fs::path folder_;
+  const LoadOptions& options_;
+  const std::map<std::string, Source> sources_;
+  std::map<std::string, LoadedModel> bases_;  // of copies, by file
 };
 
 }  // namespace
@@ -182,8 +205,8 @@ void append_copy(Model& model, const Model& part, const Affine& matrix, int32_t 
 
 void load_folder(Scene& scene, const std::string& folder, const LoadOptions& options,
                  const FolderRules& rules) {
-  FolderLoader loader(scene, rules, folder, options.threads);
-  const uint64_t models = loader.run(options), absent = loader.absent();
+  FolderLoader loader(scene, rules, folder, options);
+  const uint64_t models = loader.run(), absent = loader.absent();
   scene.form = absent == 0 ? "original" : "partial";
   scene.note = absent == 0 ? fmt::format("The scene is complete: it has the original's {} models.", models)
                            : fmt::format("The scene has {} models; {} files of the original are absent.",

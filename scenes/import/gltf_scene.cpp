@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "base/host_threads.h"
+#include "base/parallel_ranges.h"
 #include "base/regular_file.h"
 #include "pictures/decode.h"
 #include "scenes/import/gltf_animation.h"
@@ -142,8 +142,7 @@ class Nodes {
     }
     std::vector<PrimitiveOrigin> origins;
     const auto model = uint32_t(scene_.models.size());
-    scene_.models.push_back(
-        read_mesh(file_, node.mesh, {materials_, path_, host_threads(options_.threads)}, &origins));
+    scene_.models.push_back(read_mesh(file_, node.mesh, {materials_, path_, options_.threads}, &origins));
     boxes_.push_back(bounds(scene_.models.back()));
     moving_.deformed.push_back({model, index, {file_, path_, index, origins, scene_.models.back()}});
     add_instance(model, node.skin >= 0 ? kStands : index, node.skin >= 0 ? kIdentity : affine_of(matrix));
@@ -158,7 +157,7 @@ class Nodes {
   uint32_t model_of(int mesh) {
     const auto [place, is_new] = models_.try_emplace(mesh, uint32_t(scene_.models.size()));
     if (is_new) {
-      scene_.models.push_back(read_mesh(file_, mesh, {materials_, path_, host_threads(options_.threads)}));
+      scene_.models.push_back(read_mesh(file_, mesh, {materials_, path_, options_.threads}));
       boxes_.push_back(bounds(scene_.models.back()));
       if (options_.progress) options_.progress(double(models_.size()) / double(file_.meshes.size()));
     }
@@ -210,18 +209,27 @@ class Nodes {
   bool has_camera_ = false, has_lamp_ = false;
 };
 
-bool decode(tinygltf::Image* image, int index, std::string* error, std::string*, int, int,
-            const unsigned char* bytes, int size, void*) {
-  pictures::DecodedPicture picture = pictures::decode_picture({bytes, size_t(size)});
-  if (!picture.error.empty()) {
-    *error += fmt::format("image {} ('{}') is no PNG or JPEG picture: {}", index,
-                          image->uri.empty() ? image->name : image->uri, picture.error);
-    return false;
-  }
-  image->width = int(picture.width), image->height = int(picture.height);
-  image->component = 4, image->bits = 8;
-  image->image = std::move(picture.bytes);
+// Keeps the bytes of a picture, which decode_images() reads when all are there.
+bool keep_bytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                int size, void*) {
+  image->image.assign(bytes, bytes + size);
   return true;
+}
+
+// Puts texels in the place of the bytes that keep_bytes() has kept.
+void decode_images(std::vector<tinygltf::Image>& images, const std::string& path, uint32_t threads) {
+  parallel_ranges(images.size(), 1, threads, [&](size_t i, size_t) {
+    tinygltf::Image& image = images[i];
+    if (image.image.empty()) return;  // The file names no picture here.
+    pictures::DecodedPicture picture = pictures::decode_picture(image.image);
+    if (!picture.error.empty())
+      throw UserError(
+          {path}, fmt::format("this file cannot be read: image {} ('{}') is no PNG or JPEG picture: {}", i,
+                              image.uri.empty() ? image.name : image.uri, picture.error));
+    image.width = int(picture.width), image.height = int(picture.height);
+    image.component = 4, image.bits = 8;
+    image.image = std::move(picture.bytes);
+  });
 }
 
 std::string note_of(const tinygltf::Model& file, bool moving) {
@@ -249,9 +257,9 @@ bool is_regular_file(const std::string& path, void*) {
   return std::filesystem::is_regular_file(path, failed);
 }
 
-tinygltf::Model read_file(const std::string& path) {
+tinygltf::Model read_file(const std::string& path, uint32_t threads) {
   tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(decode, nullptr);
+  loader.SetImageLoader(keep_bytes, nullptr);
   // The library's own functions wait for the writer when a file names a pipe.
   loader.SetFsCallbacks(
       {is_regular_file, tinygltf::ExpandFilePath, read_whole_file, tinygltf::WriteWholeFile, nullptr});
@@ -271,13 +279,14 @@ tinygltf::Model read_file(const std::string& path) {
     if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) == kKnownExtensions.end())
       throw UserError({path}, fmt::format("it requires the extension {}, which is not read", name),
                       "export it without compression or quantisation");
+  decode_images(file.images, path, threads);
   return file;
 }
 
 }  // namespace
 
 Scene load_gltf(const std::string& path, const LoadOptions& options) {
-  const tinygltf::Model file = read_file(path);
+  const tinygltf::Model file = read_file(path, options.threads);
   Scene scene;
   Nodes nodes(scene, file, path, options);
   const int number = std::max(0, file.defaultScene);

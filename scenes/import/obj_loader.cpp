@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -95,16 +96,22 @@ Material material_of(const tinyobj::material_t& m) {
   return lambertian(float(m.diffuse[0]), float(m.diffuse[1]), float(m.diffuse[2]));
 }
 
-// Gives a material the texture `name`. `folder` is the folder of the library, to which texture names are
-// relative.
-void add_texture(Material& material, std::string name, const fs::path& folder,
-                 std::vector<Texture>& textures) {
-  if (name.empty()) return;
-  while (std::isspace(static_cast<unsigned char>(name.back()))) name.pop_back();
-  std::replace(name.begin(), name.end(), '\\', '/');
-  textures.push_back(load_texture((folder / name).string()));
-  material.texture = int32_t(textures.size() - 1);
-  if (material.diffuse == Vec4{0, 0, 0, 1}) material.diffuse = {1, 1, 1, 1};
+// Gives each of `materials` its texture. `read` are the library's materials, and `folder` is the folder of
+// the material library, to which texture names are relative.
+void add_textures(std::span<Material> materials, const std::vector<tinyobj::material_t>& read,
+                  const fs::path& folder, const ObjReading& reading) {
+  std::vector<std::string> paths;
+  for (size_t i = 0; i < read.size(); ++i) {
+    std::string name = read[i].diffuse_texname;
+    while (!name.empty() && std::isspace(static_cast<unsigned char>(name.back()))) name.pop_back();
+    if (name.empty()) continue;
+    std::replace(name.begin(), name.end(), '\\', '/');
+    materials[i].texture = int32_t(reading.textures->size() + paths.size());
+    if (materials[i].diffuse == Vec4{0, 0, 0, 1}) materials[i].diffuse = {1, 1, 1, 1};
+    paths.push_back((folder / name).string());
+  }
+  std::vector<Texture> textures = load_textures(paths, reading.threads);
+  std::move(textures.begin(), textures.end(), std::back_inserter(*reading.textures));
 }
 
 }  // namespace
@@ -144,12 +151,13 @@ Model load_obj(const std::string& path, std::vector<Material>& materials, const 
   std::vector<int32_t> material_of_line;
   const std::vector<tinyobj::material_t> read = read_materials(chunks, path, parts, material_of_line);
   for (int32_t& material : material_of_line) material += int32_t(materials.size());
+  const size_t first = materials.size();
   for (const tinyobj::material_t& m : read) {
     materials.push_back(material_of(m));
     if (reading.names) reading.names->push_back(m.name);
-    if (reading.textures)
-      add_texture(materials.back(), m.diffuse_texname, fs::path(path).parent_path(), *reading.textures);
   }
+  if (reading.textures)
+    add_textures(std::span(materials).subspan(first), read, fs::path(path).parent_path(), reading);
   if (read.empty()) materials.push_back(lambertian(0.7f, 0.7f, 0.7f));
 
   ObjMesh mesh = read_obj(chunks, material_of_line, path, reading.threads);

@@ -77,6 +77,16 @@ class GlintTest(unittest.TestCase):
             return {row["path"]: float(row["value"]) for row in csv.DictReader(file)}
 
 
+def png_bytes(width, height, pixels):
+    """Returns a PNG of 8-bit pixels whose channels, three or four, follow from their number."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    stride = len(pixels) // height
+    rows = b"".join(b"\0" + pixels[y * stride:(y + 1) * stride] for y in range(height))
+    header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[stride // width], 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
 def read_png(path):
     """Returns width, height and the bytes of an 8-bit RGB image (PNG specification: chunks and filters)."""
     data, at, packed, width, height = path.read_bytes(), 8, b"", 0, 0

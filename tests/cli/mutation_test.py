@@ -14,13 +14,14 @@ import struct
 import subprocess
 import zlib
 
-from glint_case import GLINT, ROOT, GlintTest, main
+from glint_case import GLINT, ROOT, GlintTest, main, png_bytes
 
 COUNT, FIRST = int(os.environ.get("GLINT_MUTATIONS", "25")), int(os.environ.get("GLINT_MUTATION_SEED", "1"))
 SECONDS = 60  # for an input; a sanitizer slows all of them down
 EXITS = (0, 1, 2, 3, 4, 5)
 TOKENS = [b"0", b"-1", b"1", b"99999999999999999999", b"4294967295", b"2147483648", b"1e308", b"nan", b"-inf", b'""', b"{}", b"[]", b"null", b"true", b'"',
           b"[", b"{", b"\0", b"\xff", b"/", b"..", b"\n", b"#", b"=", b",", b"1e-400", b"65536", b"16777216"]
+PNG = png_bytes(2, 2, bytes(16))
 WORD = re.compile(rb'-?[0-9]+(?:\.[0-9]+)?|"[^"\n]*"|\b[a-z_]+\b')
 FRAME = ["--size", "4x4", "--spp", "1", "--mode", "functional", "--out", "out", "--max-instructions", "20000"]
 
@@ -48,13 +49,6 @@ def damaged(data, dice):
     return bytes(data)
 
 
-def png():
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 2, 8, 6, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(bytes(18))) +
-            chunk(b"IEND", b""))
-
-
 def exr():
     """Returns an EXR file of 2 by 2 pixels with one channel, without compression."""
     def attribute(name, kind, value):
@@ -74,7 +68,7 @@ def pfm():
 
 def glb():
     """Returns one triangle with a camera and a picture that lies in the file."""
-    data = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0) + png()
+    data = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0) + PNG
     data += bytes(-len(data) % 4)
     text = json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
@@ -82,7 +76,7 @@ def glb():
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}], "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
         "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "alphaMode": "MASK"}], "textures": [{"source": 0}],
         "images": [{"bufferView": 1, "mimeType": "image/png"}], "buffers": [{"byteLength": len(data)}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": len(png())}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": len(PNG)}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}]}).encode()
     text += b" " * (-len(text) % 4)
     parts = struct.pack("<II", len(text), 0x4e4f534a) + text + struct.pack("<II", len(data), 0x4e4942) + data
@@ -111,13 +105,13 @@ class Damage(GlintTest):
 
 class Scenes(Damage):
     def test_obj_and_its_materials(self):
-        (self.folder / "a.png").write_bytes(png())
+        (self.folder / "a.png").write_bytes(PNG)
         materials = b"newmtl m\nKd 0.5 0.5 0.5\nmap_Kd a.png\n"
         (self.folder / "a.mtl").write_bytes(materials)
         mesh = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nusemtl m\nf 1 3 2\nf 1/1/1 2/1/1 -1/1/1\ng a\nf 1//1 2//1 3//1 4//1\n"
         self.damage("a.obj", mesh, "run", "a.obj", *FRAME)
         self.damage("a.mtl", materials, "run", "a.obj", *FRAME)
-        self.damage("a.png", png(), "run", "a.obj", *FRAME)
+        self.damage("a.png", PNG, "run", "a.obj", *FRAME)
         for name, data in (("a.exr", exr()), ("a.pfm", pfm())):
             (self.folder / "a.mtl").write_bytes(materials.replace(b"a.png", name.encode()))
             self.damage(name, data, "run", "a.obj", *FRAME)

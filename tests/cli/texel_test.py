@@ -188,6 +188,40 @@ class Texels(GlintTest):
             self.assertIn(f"'descr': '{kind}', 'fortran_order': False, 'shape': (1, 2, 4)".encode(), data)
             self.assertEqual(struct.unpack("<8I" if kind == "<u4" else "<8i", data[-32:]), numbers)
 
+    def test_files_of_bytes_keep_them_and_their_smaller_levels_are_means_of_linear_values(self):
+        grey = [255 * (x % 2) if y < 2 else 16 * y + x for y in range(16) for x in range(16)]
+        (self.folder / "grey.png").write_bytes(glint_case.png_bytes(16, 16, bytes(part for value in grey for part in (value, value // 2, 255 - value))))
+        self.write("copy.comp", """#version 460
+layout(local_size_x = 16, local_size_y = 16) in;
+layout(set = 0, binding = 0) uniform sampler2DArray encoded;
+layout(set = 0, binding = 1) uniform sampler2D plain;
+layout(set = 0, binding = 2) buffer Out { vec4 o[]; };
+void main() {
+  const uint at = gl_LocalInvocationIndex;
+  o[2 * at] = texelFetch(encoded, ivec3(gl_LocalInvocationID.xy, 1), 0);
+  o[2 * at + 1] = texelFetch(plain, ivec2(gl_LocalInvocationID.xy), 0);
+  if (at == 0 && textureQueryLevels(plain) > 1) o[512] = texelFetch(encoded, ivec3(0, 0, 1), 1), o[513] = texelFetch(plain, ivec2(0), 1);
+}
+""")
+        image = '[[image]]\nbinding = %d\nfile = %s\nformat = "%s"\nmipmaps = %s\n'
+        text = '[compute]\nshader = "copy.comp"\n[launch]\ngroups = 1\n[[buffer]]\nbinding = 2\ntype = "f32"\ncount = 2056\nsave = "out.csv"\n'
+        files = '["grey.png", "grey.png"]'
+        for mipmaps in ("true", "false"):
+            self.run_text(0, [], text + image % (0, files, "rgba8_srgb", mipmaps) + image % (1, '"grey.png"', "rgba8_unorm", mipmaps))
+            saved = self.saved_numbers()
+            for i, value in enumerate(grey):
+                for c, byte in enumerate((value, value // 2, 255 - value)):
+                    share = byte / 255
+                    linear = share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4
+                    self.assertAlmostEqual(saved[8 * i + c], linear, places=6)
+                    self.assertAlmostEqual(saved[8 * i + 4 + c], share, places=6)
+                self.assertEqual((saved[8 * i + 3], saved[8 * i + 7]), (1, 1))
+            if mipmaps == "true":  # The means of two black and two white texels are one half; 188 of 255 is its code.
+                self.assertAlmostEqual(saved[4 * 512], ((188 / 255 + 0.055) / 1.055) ** 2.4, places=5)
+                self.assertAlmostEqual(saved[4 * 513], 128 / 255, places=5)
+        self.expect(2, ["p.toml:10:", "image 'image_0_0' names 2 files and has 3 layers of 1 samples; each sample of a layer takes a file"],
+                    "run", self.write("p.toml", text + (image % (0, files, "rgba8_srgb", "false")).replace("[[image]]", "[[image]]\nlayers = 3") + image % (1, '"grey.png"', "rgba8_unorm", "false")), "--out", "out")
+
     def test_integers_are_the_bytes_of_a_png_when_read_and_when_saved(self):
         self.write("count.comp", """#version 460
 layout(local_size_x = 16, local_size_y = 16) in;

@@ -119,7 +119,7 @@ Rows test_rows() {
 Rows material_rows(const std::string& name, const std::string& assets) {
   if (name.empty())
     throw UserError({}, "the materials of which scene?", "for example `glint list materials WKND`");
-  const scenes::Scene scene = scenes::load_scene(name, {assets, false, {}});
+  const scenes::Scene scene = scenes::load_scene(name, {assets, false, {}, 0});
   Rows rows = {{"number", "name", "model", "diffuse", "fuzziness", "refraction_index", "texture"}};
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scenes::Material& m = scene.materials[i];

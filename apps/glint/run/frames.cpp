@@ -16,6 +16,7 @@
 #include "apps/glint/options/observe_options.h"
 #include "apps/glint/run/launch_sample.h"
 #include "apps/glint/run/recorded_run.h"
+#include "base/host_threads.h"
 #include "pictures/apng.h"
 #include "pictures/exr.h"
 #include "pipeline/description/camera_path.h"
@@ -159,7 +160,7 @@ class FrameRun {
     const pictures::ImageView image{result.width, result.height, result.rgba};
     keep_picture(info.moment->frame, image);
     directory.write("image.png", pngs_.at(info.moment->frame));
-    directory.write("image.pfm", pictures::pfm_bytes(image));
+    directory.write("image.pfm", pictures::pfm_bytes(image, host_threads(job_.threads)));
     if (options_.exr) directory.write("image.exr", pictures::exr_bytes(image));
     note_not_finite("image.pfm", image, result.picture, result, info);
     directory.write_stats(result.statistics(), info.compact);
@@ -167,7 +168,7 @@ class FrameRun {
   }
 
   void keep_picture(uint64_t frame, const pictures::ImageView& image) {
-    std::string& png = pngs_[frame] = pictures::png_bytes(image);
+    std::string& png = pngs_[frame] = pictures::png_bytes(image, host_threads(job_.threads));
     directory_.write(picture_of(frame), png);
   }
 

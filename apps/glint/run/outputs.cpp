@@ -111,8 +111,8 @@ std::string buffer_file(const std::string& file, const std::string& named, std::
   return out;
 }
 
-std::string image_file(const std::string& file, const exec::ImageView& view,
-                       std::span<const std::byte> bytes) {
+std::string image_file(const std::string& file, const exec::ImageView& view, std::span<const std::byte> bytes,
+                       uint32_t threads) {
   const std::string ending = ending_of(file);
   if (ending != ".png" && ending != ".pfm" && ending != ".exr" && ending != ".npy" && ending != ".csv")
     return std::string(text_of(bytes));
@@ -123,9 +123,9 @@ std::string image_file(const std::string& file, const exec::ImageView& view,
     // The bytes of a PNG are integers as they are, as those of a PNG become integers when an image is read.
     if (exec::is_integer(exec::info_of(view.format)))
       for (float& channel : texels) channel /= 255.0f;
-    return pictures::png_bytes({view.width, rows, texels});
+    return pictures::png_bytes({view.width, rows, texels}, threads);
   }
-  if (ending == ".pfm") return pictures::pfm_bytes({view.width, rows, texels});
+  if (ending == ".pfm") return pictures::pfm_bytes({view.width, rows, texels}, threads);
   return pictures::exr_bytes({view.width, rows, texels});
 }
 

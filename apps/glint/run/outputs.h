@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,9 @@ std::string buffer_file(const std::string& file, const std::string& type, std::s
 
 // Returns the bytes of an image's file: .png, .pfm and .exr hold level 0 with layers and slices one below the
 // other, .npy holds floats (rows, columns, 4), .csv has one row per texel, and any other ending keeps the raw
-// bytes.
-std::string image_file(const std::string& file, const exec::ImageView& view,
-                       std::span<const std::byte> bytes);
+// bytes. Up to `threads` threads of the host encode .png and .pfm.
+std::string image_file(const std::string& file, const exec::ImageView& view, std::span<const std::byte> bytes,
+                       uint32_t threads = 1);
 
 // Returns what is wrong with the file's name, or "".
 std::string wrong_with_output(const std::string& file, bool is_image);

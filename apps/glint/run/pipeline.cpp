@@ -61,7 +61,7 @@ void check_saves(const pipeline::PipelineDescription& d) {
 
 // Writes what the file asks for. Returns lines for the summary.
 std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunDirectory& directory,
-                              const pipeline::RenderResult& result, report::RunInfo& info) {
+                              const pipeline::RenderResult& result, report::RunInfo& info, uint32_t threads) {
   std::vector<std::string> lines;
   const pipeline::PipelineDescription& d = world.description();
   for (size_t i = 0; i < d.images.size(); ++i) {
@@ -70,7 +70,7 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
     const uint64_t bytes = view.bytes_before_level(1);
     const std::byte* const texels = world.memory().find(view.base, bytes);
     for (const pipeline::Save& save : d.images[i].saves) {
-      directory.write(save.file, image_file(save.file, view, {texels, size_t(bytes)}));
+      directory.write(save.file, image_file(save.file, view, {texels, size_t(bytes)}, threads));
       lines.push_back(fmt::format("{:<10} {}", d.images[i].name, directory.path_of(save.file)));
     }
     const std::vector<float> floats = pipeline::texels_as_floats(view, texels);
@@ -225,7 +225,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
       },
       [&](const pipeline::RenderResult& ended) {
         directory.write_stats(ended.statistics(), options.compact());
-        files = keep(world, directory, ended, info);
+        files = keep(world, directory, ended, info, host_threads(job.threads));
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         files.insert(files.begin(), launches.lines.begin(), launches.lines.end());
         if (is_list) return;  // Each launch has kept its own.

@@ -50,9 +50,9 @@ pipeline::RenderJob job_of(const Session& session, const RelaunchOptions& option
                                               : options.shader_dir;
   const bool is_file = !run.text("scene.file").empty();
   job.scene = scenes::load_scene(is_file ? file_of(run, directory) : run.text("scene.name"),
-                                 {options.assets, false, {}});
+                                 {options.assets, false, {}, 0});
   scenes::override_scene(job.scene, run.texts_in("overrides"));
-  if (fmt::format("{:016x}", job.scene.hash()) != run.text("scene.hash"))
+  if (fmt::format("{:016x}", job.scene.hash(0)) != run.text("scene.hash"))
     throw UserError(
         {directory + "/run.json"},
         fmt::format("the run's scene is '{}', and here it is '{}'", run.text("scene.form"), job.scene.form),

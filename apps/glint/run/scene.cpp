@@ -15,6 +15,7 @@
 #include "apps/glint/run/frames.h"
 #include "apps/glint/run/recorded_run.h"
 #include "apps/glint/run/single_launch.h"
+#include "base/host_threads.h"
 #include "pictures/exr.h"
 #include "pipeline/render.h"
 #include "pipeline/sampling/sampled_run.h"
@@ -80,7 +81,7 @@ pipeline::RenderResult render_into(const Session& session, const report::RunDire
   };
   const auto keep = [&](const pipeline::RenderResult& rendered) {
     const pictures::ImageView image{rendered.width, rendered.height, rendered.rgba};
-    directory.write_image(image);
+    directory.write_image(image, host_threads(job.threads));
     if (options.exr) directory.write("image.exr", pictures::exr_bytes(image));
     note_not_finite("image.pfm", image, rendered.picture, rendered, info);
     directory.write_stats(rendered.statistics(), info.compact);

@@ -56,6 +56,32 @@ TEST_CASE("a PNG states its size, 8 bits and three channels in its header") {
   CHECK(bytes.substr(16, 10) == std::string("\0\0\0\x01\0\0\0\x02\x08\x02", 10));
 }
 
+TEST_CASE("a PNG and a PFM have the same bytes at any number of threads, and read back as they were") {
+  constexpr uint32_t kWidth = 500, kHeight = 401;  // The PNG has three parts that threads compress.
+  std::vector<float> rgba(size_t{kWidth} * kHeight * 4);
+  uint32_t state = 1;
+  for (float& value : rgba) {
+    state = state * 1'664'525u + 1'013'904'223u;
+    value = float(state >> 24) / 255.0f;
+  }
+  const ImageView image{kWidth, kHeight, rgba};
+  const std::string png = png_bytes(image, 1), pfm = pfm_bytes(image, 1);
+  for (const uint32_t threads : {2u, 3u, 7u}) {
+    CHECK(png == png_bytes(image, threads));
+    CHECK(pfm == pfm_bytes(image, threads));
+  }
+  const DecodedPicture bytes = bytes_of(png), floats = decode_pfm(pfm);
+  REQUIRE(bytes.error == "");
+  REQUIRE(bytes.bytes.size() == rgba.size());
+  REQUIRE(floats.floats.size() == rgba.size());
+  size_t wrong = 0;
+  for (size_t i = 0; i < rgba.size(); ++i) {
+    const float wanted = i % 4 == 3 ? 1.0f : rgba[i];
+    wrong += floats.floats[i] != wanted || float(bytes.bytes[i]) / 255.0f != wanted;
+  }
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("a PFM of one channel or of big-endian floats is read") {
   const DecodedPicture grey = decode_pfm(std::string("Pf\n1 2\n-1\n") + std::string("\0\0\0\x40", 4) +
                                          std::string("\0\0\x80\x3f", 4));

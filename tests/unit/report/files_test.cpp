@@ -67,7 +67,7 @@ TEST_CASE("a run directory is complete and leaves no temporary file") {
   const RunDirectory directory((folder.path / "a/b").string());
   stats::Group root(nullptr, "gpu");
   stats::Counter counter(&root, "cycles", "cycle", "Cycles.");
-  directory.write_image({1, 2, std::vector<float>(8, 0.5f)});
+  directory.write_image({1, 2, std::vector<float>(8, 0.5f)}, 1);
   directory.write_stats(root);
   directory.write_config(kParams, "t");
   RunInfo info;
