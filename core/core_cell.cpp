@@ -251,6 +251,29 @@ void CoreCell::observe(CoreObserver& observer) {
   });
 }
 
+bool CoreCell::hears_l1() {
+  return warps_.schedulers().front().l1_listener() != nullptr;
+}
+
+void CoreCell::start_l1(uint32_t lines) {
+  for (Scheduler& scheduler : warps_.schedulers()) scheduler.l1_listener()->start(lines);
+}
+
+void CoreCell::tell_missed(mem::Token access, Address line) {
+  const uint32_t slot = lsu_.access(access).slot;
+  warps_.schedulers()[slot % params_.schedulers].l1_listener()->missed(slot / params_.schedulers, line);
+}
+
+void CoreCell::tell_replaced(uint32_t place, std::optional<mem::Token> access,
+                             std::optional<Address> victim) {
+  for (Scheduler& scheduler : warps_.schedulers()) {
+    std::optional<uint32_t> warp;
+    if (access && lsu_.access(*access).slot % params_.schedulers == scheduler.index())
+      warp = lsu_.access(*access).slot / params_.schedulers;
+    scheduler.l1_listener()->replaced(place, warp, victim);
+  }
+}
+
 std::string CoreCell::describe_stall() const {
   return fmt::format("{}: {} of {} warp slots in use\n", counts_.stats.name(), warps_.num_resident(),
                      warps_.size()) +

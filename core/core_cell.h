@@ -136,6 +136,12 @@ class CoreCell final : public Cell {
   // Tells `observer`, which outlives the run, of all that happens from now on. It is called before the first
   // launch.
   void observe(CoreObserver& observer);
+  // Return whether a policy hears what the L1 does, and tell it so: core/l1_listener.h. `access` is the token
+  // of a request of the load-store unit; there is none for a request of the RT unit.
+  bool hears_l1();
+  void start_l1(uint32_t lines);
+  void tell_missed(mem::Token access, Address line);
+  void tell_replaced(uint32_t place, std::optional<mem::Token> access, std::optional<Address> victim);
   // Returns the lanes of access `access`, the token of its requests, that touch a line. `slot` becomes the
   // slot of their warp.
   LaneMask readers_of(mem::Token access, Address line, uint32_t& slot) const {

@@ -9,6 +9,7 @@
 
 #include "base/registry.h"
 #include "base/types.h"
+#include "core/l1_listener.h"
 
 namespace glint::core {
 
@@ -26,6 +27,9 @@ struct IssueView {
   std::span<const uint64_t> age;  // launch number of each warp: smaller is older; unique among resident warps
   Cycle now = 0;
   RtView rt = {};
+  // These are 0 unless the policy's holds_back() holds, and set in allowed() only. Bit i: warp i holds its
+  // slot; the next instruction of warp i goes to the load-store unit.
+  uint64_t resident = 0, at_memory = 0;
 };
 
 // Returns the oldest of some warps; there must be one.
@@ -45,6 +49,8 @@ inline uint32_t oldest_of(uint64_t warps, const IssueView& view) {
 //  - No ready warp starves: when a picked warp is not ready for as many picks as there are warps, every warp
 //    that stays ready is picked. (A greedy policy may stay with one warp for as long as that warp is ready.)
 //  - pick() is called only in cycles with a ready warp, so a policy must not count calls as cycles.
+//  - A policy that holds warps back lets each of them go on after some cycles in which no other warp issues.
+//    Cycles in which all ready warps are held back count as lsu_throttle.
 class IssueScheduler {
  public:
   static constexpr PolicyKind kKind{"core.issue", "core/schedulers"};
@@ -55,6 +61,14 @@ class IssueScheduler {
   // Returns whether pick() looks at IssueView::rt. It is asked once.
   virtual bool needs_rt() const { return false; }
   virtual uint32_t pick(const IssueView& view) = 0;
+  // Returns who hears what the L1 does for the scheduler's warps, or null when the policy does not care. It
+  // is asked before the first cycle.
+  virtual L1Listener* l1_listener() { return nullptr; }
+  // Returns whether ready warps may be kept from issuing. It is asked once.
+  virtual bool holds_back() const { return false; }
+  // Returns the warps of `view.ready` that may issue in this cycle; pick() gets these. It is called in every
+  // cycle with a ready warp, and only when holds_back() holds.
+  virtual uint64_t allowed(const IssueView& view) { return view.ready; }
 };
 
 }  // namespace glint::core

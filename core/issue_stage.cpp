@@ -27,6 +27,11 @@ uint64_t IssueStage::leave_out_bank_conflicts(Scheduler& scheduler, uint64_t rea
   return ready;
 }
 
+uint64_t IssueStage::leave_out_held(Scheduler& scheduler, uint64_t ready, Cycle now) const {
+  if (core_.params.register_file.banks) ready = leave_out_bank_conflicts(scheduler, ready, now);
+  return ready ? scheduler.leave_out_held(ready, now) : 0;
+}
+
 // Finds what the operands of the warp's next instruction add to its sequence. They have to be read before
 // the instruction is executed, because its result may take the register of one of them.
 void IssueStage::look_for_slow_path(const exec::WarpContext& warp, const IssueRow& row) {
@@ -209,8 +214,8 @@ void IssueStage::run(uint32_t due, Cycle now) {
 inline void IssueStage::run(Scheduler& scheduler, Cycle now) {
   core_.counts.spend(scheduler, now);
   uint64_t ready = scheduler.find_ready(now, doors_);
-  if (core_.params.register_file.banks) [[unlikely]]
-    ready = leave_out_bank_conflicts(scheduler, ready, now);
+  if (scheduler.may_hold_back()) [[unlikely]]
+    ready = leave_out_held(scheduler, ready, now);
   if (!ready) {
     if (core_.counts.profile) [[unlikely]]
       core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));

@@ -38,6 +38,7 @@ class IssueStage {
   void run(Scheduler& scheduler, Cycle now);
   void issue_value(Scheduler& scheduler, uint32_t local, WarpSlot& at, const IssueRow& row, Cycle now);
   uint64_t leave_out_bank_conflicts(Scheduler& scheduler, uint64_t ready, Cycle now) const;
+  uint64_t leave_out_held(Scheduler& scheduler, uint64_t ready, Cycle now) const;
   void issue(uint32_t slot, Cycle now);
   void hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
   void finish_fixed(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);

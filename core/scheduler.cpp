@@ -9,10 +9,26 @@ namespace glint::core {
 Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params, Alarms& alarms)
     : index_(index),
       has_latches_(params.dispatch_latch),
-      has_banks_(params.register_file.banks > 0),
       alarms_(alarms),
       policy_(params.issue.make({(slots + params.schedulers - 1) / params.schedulers})),
-      needs_rt_(policy_->needs_rt()) {
+      needs_rt_(policy_->needs_rt()),
+      policy_holds_(policy_->holds_back()) {
+  may_hold_back_ = policy_holds_ || params.register_file.banks > 0;
+}
+
+uint64_t Scheduler::leave_out_held(uint64_t ready, Cycle now) {
+  if (!policy_holds_) return ready;
+  IssueView view{ready, {age_.data(), age_.size()}, now, {}};
+  view.resident = resident_;
+  view.at_memory = resident_ & needs_door_[size_t(Door::Lsu)];
+  const uint64_t allowed = policy_->allowed(view);
+  GLINT_DCHECK(!(allowed & ~ready), "the issue policy allows warps that are not ready: {:#x}",
+               allowed & ~ready);
+  if (allowed != ready) {
+    reason_ = std::min(reason_, Stall::LsuThrottle);
+    alarms_.sleep_less(index_, now + 1);
+  }
+  return allowed;
 }
 
 void Scheduler::add(uint32_t warp, uint64_t age) {

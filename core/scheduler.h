@@ -109,7 +109,8 @@ class Scheduler {
     if (alarms_.watching() >> index_ & 1) [[unlikely]]
       watch_nothing();
     if (ready & ~needs_door_[size_t(Door::None)]) ready = leave_out_full_doors(ready, doors);
-    if (!ready || has_banks_) find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
+    if (!ready || may_hold_back_)
+      find_reason(resident_ & operands_.missing(), operands & ~piped, piped & ~ready);
     return ready;
   }
   // Holds back warps of `ready` whose register reads meet those of earlier instructions until `next`.
@@ -117,6 +118,10 @@ class Scheduler {
     reason_ = std::min(reason_, Stall::RegisterBanks);
     alarms_.sleep_less(index_, next);
   }
+  // Returns whether hold_for_banks() or leave_out_held() may keep ready warps from issuing.
+  bool may_hold_back() const { return may_hold_back_; }
+  // Returns those warps of `ready`, which is not 0, that the policy lets issue.
+  uint64_t leave_out_held(uint64_t ready, Cycle now);
   // Chooses one warp of `ready`, which is not 0. The cycle is spent on issuing.
   uint32_t pick(uint64_t ready, Cycle now, const Doors& doors) {
     IssueView view{ready, {age_.data(), age_.size()}, now, {}};
@@ -154,6 +159,7 @@ class Scheduler {
   }
 
   uint32_t index() const { return index_; }
+  L1Listener* l1_listener() { return policy_->l1_listener(); }
   Stall reason() const { return reason_; }  // what the scheduler's cycles are spent on
   bool is_resident(uint32_t warp) const { return resident_ >> warp & 1; }
   // Returns the number of cycles before `until` that no call has returned yet. All of them have reason().
@@ -218,12 +224,13 @@ class Scheduler {
   // These are the doors that were full. The second stands for both queues of the load-store unit.
   bool watches_rt_ = false, watches_lsu_ = false;
   Stall reason_ = Stall::NoWarp;
-  const bool has_latches_;  // Params::dispatch_latch
-  const bool has_banks_;    // Warps that find_ready() returns may be held back after all.
+  const bool has_latches_;      // Params::dispatch_latch
+  bool may_hold_back_ = false;  // Warps that find_ready() returns may be held back after all.
   Alarms& alarms_;
   std::unique_ptr<IssueScheduler> policy_;
-  const bool needs_rt_;    // IssueScheduler::needs_rt()
-  uint64_t resident_ = 0;  // the warps that hold their slots
+  const bool needs_rt_;      // IssueScheduler::needs_rt()
+  const bool policy_holds_;  // IssueScheduler::holds_back()
+  uint64_t resident_ = 0;    // the warps that hold their slots
   Cycle accounted_until_ = 0;
   uint64_t lsu_vacated_ = 0;                      // Lsu::num_vacated() when the doors were looked at
   std::array<uint64_t, kNumDoors> needs_door_{};  // by door: the warps that enter it next

@@ -15,7 +15,7 @@ enum class Stall : uint8_t {
   Issued,          // An instruction was issued.
   MathThrottle,    // Operands are ready, but the execution pipe still takes the previous instruction.
   RegisterBanks,   // Operands are ready, but the register banks still read those of another instruction.
-  LsuThrottle,     // Operands are ready, but the scheduler's memory queue or the table of accesses is full.
+  LsuThrottle,     // Operands are ready, but a queue or the table of accesses is full, or the policy waits.
   TexThrottle,     // Operands are ready, but the queue of texture instructions is full.
   RtFull,          // Rays are ready, but the RT unit takes no more warps.
   RawFixed,        // The result of an integer, floating-point, move or predicate instruction is missing.

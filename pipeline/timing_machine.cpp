@@ -125,7 +125,24 @@ TimingMachine::TimingMachine(const GpuParams& params, const exec::World& world, 
   connect();
 }
 
+// Lets the issue policy of a core hear what the core's L1 does, if it listens.
+void TimingMachine::connect_issue_policy(uint32_t i) {
+  core::CoreCell& core = *cores_[i];
+  if (!core.hears_l1()) return;
+  mem::L1Cache& l1 = memory_.l1(i);
+  core.start_l1(l1.num_lines());
+  l1.read_missed().listen([&core](const mem::ReadMissed& missed) {
+    if (missed.client == mem::Client::Lsu) core.tell_missed(missed.request.token, missed.request.line);
+  });
+  l1.line_replaced().listen([&core](const mem::LineReplaced& replaced) {
+    const bool is_warps = replaced.by.client == mem::Client::Lsu;
+    core.tell_replaced(replaced.place, is_warps ? std::optional(replaced.by.token) : std::nullopt,
+                       replaced.victim);
+  });
+}
+
 void TimingMachine::connect() {
+  for (uint32_t i = 0; i < cores_.size(); ++i) connect_issue_policy(i);
   for (Cell* cell : memory_.cells()) engine_.add(*cell);
   for (ChannelBase* channel : memory_.channels()) engine_.add(*channel);
   const mem::Network::Inputs inputs = memory_.inputs();

@@ -98,6 +98,7 @@ class TimingMachine {
   };
   News commit_effects();
   void connect();
+  void connect_issue_policy(uint32_t i);
   void refuse_livelock(Cycle now, bool memory_changed);
   void refuse_endless_launch(Cycle now);
   void refuse_endless_loops() const;

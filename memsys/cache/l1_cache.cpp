@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <fmt/format.h>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -59,7 +60,7 @@ inline bool L1Cache::take(Cycle now, Client client, const Request& request) {
   if (!request.write) [[likely]]
     return read(now, client, request);
   const bool keeps = is_local(request.traffic) ? params_.local_write_back : params_.global_write_back;
-  return keeps ? write_back(now, request) : write_through(now, request);
+  return keeps ? write_back(now, client, request) : write_through(now, client, request);
 }
 
 // Choice: a prefetch that finds its line leaves the order of replacement as it is.
@@ -98,7 +99,7 @@ bool L1Cache::miss(Cycle now, Client client, const Request& request, uint32_t sl
     if (slot == kNone && !tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
     const uint32_t packets = (fetched ? 1 : 0) + (slot == kNone && tags_.victim(request.line).dirty ? 1 : 0);
     if (!queue_room(packets)) return refuse(Refusal::QueueFull);
-    hold(now, request.line, slot);
+    hold(now, client, request, slot);
   }
   if (entry == kNone) {
     entry = mshr_.allocate(request.line);
@@ -123,21 +124,30 @@ bool L1Cache::miss(Cycle now, Client client, const Request& request, uint32_t sl
   return true;
 }
 
+// Puts a line that `by` has asked for in the place of another one.
+[[gnu::always_inline]] inline TagArray::Line& L1Cache::replace(Cycle now, Address line, Requester by) {
+  const TagArray::Line& victim = tags_.victim(line);
+  line_replaced_.fire([&] {
+    return LineReplaced{tags_.slot_of(victim), by,
+                        victim.used() ? std::optional(victim.address()) : std::nullopt};
+  });
+  evict(now, victim);
+  return tags_.insert(line);
+}
+
 // Holds a line for data on their way, and evicts another line for it when the line is absent.
-void L1Cache::hold(Cycle now, Address line, uint32_t slot) {
-  if (slot == kNone) evict(now, tags_.victim(line));
-  (slot == kNone ? tags_.insert(line) : tags_.line(slot)).held = true;
+void L1Cache::hold(Cycle now, Client client, const Request& request, uint32_t slot) {
+  (slot == kNone ? replace(now, request.line, {client, request.token}) : tags_.line(slot)).held = true;
 }
 
 // Writes a request through to the L2. Sectors that are present stay valid, with the new bytes. With
 // `write_allocate`, a line that is absent is allocated with the sectors that the write covers.
-bool L1Cache::write_through(Cycle now, const Request& request) {
+bool L1Cache::write_through(Cycle now, Client client, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   const uint8_t covered = params_.write_allocate ? covered_sectors(request, line_bytes_) : uint8_t{0};
   const bool allocates = slot == kNone && covered && tags_.has_victim(request.line);
   const bool evicts_dirty = allocates && tags_.victim(request.line).dirty;
   if (!queue_room(evicts_dirty ? 2 : 1)) return refuse(Refusal::QueueFull);
-  if (allocates) evict(now, tags_.victim(request.line));
   if (slot != kNone) {
     tags_.touch(slot);
     stats_.write_hits.add(request.traffic);
@@ -147,7 +157,7 @@ bool L1Cache::write_through(Cycle now, const Request& request) {
     }
   }
   if (allocates)
-    tags_.insert(request.line).valid = covered;
+    replace(now, request.line, {client, request.token}).valid = covered;
   else if (slot != kNone && covered && !params_.write_evict)
     tags_.line(slot).valid |= covered;
   stats_.writes.add(request.traffic);
@@ -192,18 +202,17 @@ bool L1Cache::pass_atomic(Cycle now, Client client, const Request& request) {
 
 // Writes a request into the cache, which writes it back later. Whole sectors are written, so nothing needs to
 // be fetched (write-validate).
-bool L1Cache::write_back(Cycle now, const Request& request) {
+bool L1Cache::write_back(Cycle now, Client client, const Request& request) {
   const uint32_t slot = tags_.find(request.line);
   if (slot == kNone) {
     if (!tags_.has_victim(request.line)) return refuse(Refusal::SetHeld);
-    const TagArray::Line& victim = tags_.victim(request.line);
-    if (victim.dirty && queue_full()) return refuse(Refusal::QueueFull);
-    evict(now, victim);
+    if (tags_.victim(request.line).dirty && queue_full()) return refuse(Refusal::QueueFull);
   } else {
     tags_.touch(slot);
     stats_.write_hits.add(request.traffic);
   }
-  TagArray::Line& line = slot == kNone ? tags_.insert(request.line) : tags_.line(slot);
+  TagArray::Line& line =
+      slot == kNone ? replace(now, request.line, {client, request.token}) : tags_.line(slot);
   line.valid |= request.sectors;
   line.dirty |= request.sectors;
   seen_.insert_if_new(request.line);
@@ -316,6 +325,12 @@ bool L1Cache::fill(Cycle now) {
   return true;
 }
 
+// Returns who waits for a line first, which is looked up only when somebody wants to know.
+inline Requester L1Cache::first_requester(Address line) const {
+  const Waiter* const first = line_replaced_.has_listeners() ? mshr_.first_waiter(mshr_.find(line)) : nullptr;
+  return first ? Requester{first->client, first->token} : Requester{};
+}
+
 bool L1Cache::install(Cycle now, const Reply& reply) {
   const uint32_t slot = tags_.find(reply.line);
   if (slot == kNone) {
@@ -323,11 +338,10 @@ bool L1Cache::install(Cycle now, const Reply& reply) {
       prefetched_.lost(mshr_.find(reply.line), reply.sectors);
       return true;
     }
-    const TagArray::Line& victim = tags_.victim(reply.line);
-    if (victim.dirty && queue_full()) return false;
-    evict(now, victim);
+    if (tags_.victim(reply.line).dirty && queue_full()) return false;
   }
-  TagArray::Line& line = slot == kNone ? tags_.insert(reply.line) : tags_.line(slot);
+  TagArray::Line& line =
+      slot == kNone ? replace(now, reply.line, first_requester(reply.line)) : tags_.line(slot);
   line.valid |= reply.sectors;
   prefetched_.arrived(mshr_.find(reply.line), tags_.slot_of(line), reply.sectors);
   line.held = allocate_on_miss_ && (mshr_.pending(mshr_.find(reply.line)) & ~reply.sectors);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,18 @@ struct ReadMissed {
   const Request& request;
 };
 
+struct Requester {
+  Client client = Client::RtUnit;
+  Token token = 0;  // as in its request
+};
+
+// Tells that a line has taken a place of the L1.
+struct LineReplaced {
+  uint32_t place = 0;
+  Requester by;                   // who has asked for the line first; the RT unit where it is read ahead
+  std::optional<Address> victim;  // the line that made way
+};
+
 // An accepted miss or write becomes one packet in the bounded miss queue. The packet leaves through the
 // core's port when the network has room for it. Usually a line is allocated when its data arrive (streaming),
 // so that only MSHRs and the miss queue limit the misses in flight. With `allocate = "on_miss"` a line is
@@ -91,6 +104,8 @@ class L1Cache final : public L1Port {
 
   const L1Stats& stats() const { return stats_; }
   Probe<ReadMissed>& read_missed() { return read_missed_; }
+  Probe<LineReplaced>& line_replaced() { return line_replaced_; }
+  uint32_t num_lines() const { return tags_.num_lines(); }
   // Returns the latencies of all reads, from acceptance until the token can be popped.
   const Latencies& latencies() const { return latencies_; }
   // Returns whether the cache holds no miss and no packet, and has given back the token of every accepted
@@ -145,8 +160,8 @@ class L1Cache final : public L1Port {
   bool read(Cycle now, Client client, const Request& request);
   bool miss(Cycle now, Client client, const Request& request, uint32_t slot, uint8_t missing);
   void count_read(const Request& request, uint32_t slot, uint8_t missing, uint8_t fetched);
-  bool write_through(Cycle now, const Request& request);
-  bool write_back(Cycle now, const Request& request);
+  bool write_through(Cycle now, Client client, const Request& request);
+  bool write_back(Cycle now, Client client, const Request& request);
   uint64_t bank_of(Address line) const {
     if (params_.banks == 1) [[likely]]
       return 1;
@@ -157,11 +172,13 @@ class L1Cache final : public L1Port {
   bool queue_full() const { return !queue_room(1); }
   void queue_packet(Cycle ready, const Packet& packet);
   void evict(Cycle now, const TagArray::Line& victim);
+  TagArray::Line& replace(Cycle now, Address line, Requester by);
   Cycle next_departure() const;
   Cycle next_fill() const;
   void send_front(Cycle now);
   bool fill(Cycle now);
-  void hold(Cycle now, Address line, uint32_t slot);
+  void hold(Cycle now, Client client, const Request& request, uint32_t slot);
+  Requester first_requester(Address line) const;
   bool install(Cycle now, const Reply& reply);
   void answer_waiters(Cycle now, const Reply& reply);
   void count_miss(const Waiter& waiter, Cycle now, const Stamps& stamps);
@@ -174,6 +191,7 @@ class L1Cache final : public L1Port {
   CorePort port_;
   L1Stats stats_;
   Probe<ReadMissed> read_missed_;
+  Probe<LineReplaced> line_replaced_;
   Latencies latencies_;
   TagArray tags_;
   Mshr<Waiter> mshr_;

@@ -57,6 +57,10 @@ class Mshr {
     e.last = id;
     ++e.count;
   }
+  // Returns who has waited for longest, or null when nobody waits.
+  const Waiter* first_waiter(uint32_t entry) const {
+    return entries_[entry].count ? &waiters_[entries_[entry].first].waiter : nullptr;
+  }
   // Notes that `sectors` arrived and visits the waiters, oldest first. `visit` returns true for a waiter that
   // is served. The entry is free again when no sector is on the way; every waiter must be served by then.
   template <class Visit>

@@ -57,6 +57,37 @@ class Frames(GlintTest):
         self.assertLess(nodes["false"], nodes["true"])
         self.assertEqual(*((self.folder / key / "image.pfm").read_bytes() for key in nodes))
 
+    def test_ccws_spares_misses_and_cycles_where_warps_take_each_others_lines(self):
+        # Each of 32 warps of a core reads 8 lines of its own again and again; the L1 has room for half of them.
+        (self.folder / "lines.comp").write_text("""#version 460
+            layout(local_size_x = 256) in;
+            layout(set = 0, binding = 0) buffer In { float data[]; };
+            layout(set = 0, binding = 1) buffer Out { float sums[]; };
+            void main() {
+              const uint warp = gl_GlobalInvocationID.x / 32u, lane = gl_GlobalInvocationID.x % 32u;
+              float sum = 0.0;
+              for (uint round = 0u; round < 64u; ++round)
+                for (uint line = 0u; line < 8u; ++line) sum += data[(warp * 8u + line) * 32u + lane] * float(round);
+              sums[gl_GlobalInvocationID.x] = sum;
+            }""")
+        (self.folder / "lines.toml").write_text("""compute.shader = "lines.comp"
+            launch.groups = 32
+            buffer = [{ name = "data", set = 0, binding = 0, type = "f32", count = 65536, init = "iota" },
+                      { name = "sums", set = 0, binding = 1, type = "f32", count = 8192, save = ["sums.csv"] }]""")
+        cycles, fills, sums = {}, {}, {}
+        for policy in ("gto", "ccws"):
+            done = self.glint("run", "lines.toml", "--set", "memory.l1.size=16384", "--set", "memory.l2.slice_size=16384",
+                              "--set", f"core.issue={policy}", "--out", policy)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = list(csv.DictReader((self.folder / policy / "stats.csv").read_text().splitlines()))
+            cycles[policy] = int(next(row["value"] for row in rows if row["path"] == "gpu.cycles"))
+            fills[policy] = sum(int(row["value"]) for row in rows if row["path"].endswith(".l1.fills"))
+            sums[policy] = (self.folder / policy / "sums.csv").read_bytes()
+        self.assertEqual(sums["ccws"], sums["gto"])
+        self.assertEqual(fills["gto"], 256 * 8 * 64 * 4, "every read misses, and its four sectors come one by one")
+        self.assertLess(2 * fills["ccws"], fills["gto"])
+        self.assertLess(cycles["ccws"], cycles["gto"])
+
     def test_statistics_and_pictures_are_the_bytes_that_every_distribution_gives(self):
         for row in csv.DictReader((ROOT / frame_table.PATH).read_text().splitlines()):
             for threads in ("1", "3"):

@@ -61,6 +61,81 @@ TEST_CASE("every issue policy reaches every warp when picked warps have to wait"
   }
 }
 
+TEST_CASE("every issue policy that holds warps back lets each of them go on when no other warp issues") {
+  int num_holding = 0;
+  for (const std::string& name : Registry<IssueScheduler>::names()) {
+    CAPTURE(name);
+    constexpr uint32_t kWarps = 8;
+    const auto policy = make(name, kWarps);
+    if (!policy->holds_back()) continue;
+    ++num_holding;
+    const std::vector<uint64_t> age = ages(kWarps);
+    std::mt19937_64 random(5);
+    L1Listener* const listener = policy->l1_listener();
+    if (listener) listener->start(16);
+    bool has_held = false;
+    Cycle now = 0;
+    const auto view = [&](uint64_t ready) {
+      return IssueView{ready, age, now, {}, 0xff, 0x7f};  // warp 7 is at no memory instruction
+    };
+    for (; now < 5000; ++now) {
+      const auto line = Address{random() % 64 * 128};
+      if (listener && random() % 4 == 0) {
+        listener->missed(uint32_t(random() % kWarps), line);
+        listener->replaced(uint32_t(random() % 16), uint32_t(random() % kWarps),
+                           Address{random() % 64 * 128});
+      }
+      const uint64_t ready = random() & 0xff;
+      if (!ready) continue;
+      const uint64_t allowed = policy->allowed(view(ready));
+      REQUIRE((allowed & ~ready) == 0);
+      REQUIRE((allowed & 0x80) == (ready & 0x80));
+      has_held |= allowed != ready;
+      if (allowed) policy->pick(view(allowed));
+    }
+    CHECK(has_held);
+    for (now += 1'000'000; uint64_t warp : {1, 2, 4, 8, 16, 32, 64, 128})
+      CHECK(policy->allowed(view(warp)) == warp);
+  }
+  CHECK(num_holding == 1);
+}
+
+TEST_CASE("ccws holds loads of the youngest back when another warp misses a line that it has lost") {
+  const auto ccws = make("ccws", 4);
+  L1Listener& l1 = *ccws->l1_listener();
+  l1.start(2);
+  const std::vector<uint64_t> age = {30, 10, 20, 40};
+  const auto allowed = [&](Cycle now, uint64_t at_memory = 0b1111) {
+    return ccws->allowed({0b1111, age, now, {}, 0b1111, at_memory});
+  };
+  for (Cycle now = 0; now < 100; ++now) ccws->pick({0b1111, age, now});
+  l1.replaced(0, 1, {});
+  l1.missed(1, 0);           // It was never lost.
+  l1.replaced(1, 0, {});     // Warp 0 asks for a line in the other place,
+  l1.replaced(0, {}, 0x80);  // and the RT unit takes the place of warp 1's line 0x80.
+  l1.missed(0, 0x80);        // Warp 0 has not lost that line.
+  CHECK(allowed(100) == 0b1111);
+  // One lost line for 100 instructions gives 1 * 8 * (4 * 400) / 100 = 128, which is less than the base.
+  l1.missed(1, 0x80);
+  CHECK(allowed(100) == 0b1111);
+  // Warp 1 loses and misses nine more lines: 10 * 8 * 1600 / 100 = 1280. With it at the bottom, warps 2 and 0
+  // begin at 1280 and 1680. The sum of the base scores is 1600, so that warps 0 and 3 are above it.
+  for (Address line = 0x80; line < 0x80 * 10; line += 0x80) {
+    l1.replaced(0, 1, {});
+    l1.replaced(0, {}, line);
+    l1.missed(1, line);
+    l1.missed(1, line);  // It is remembered once.
+  }
+  CHECK(allowed(101) == 0b0110);
+  CHECK(allowed(101, 0b0101) == 0b1110);  // Warp 3 is not at memory.
+  // The score falls by one in a cycle. It is 1199 at cycle 182, when warp 0 begins at 1599, and 799 at cycle
+  // 582, when warp 3 does.
+  CHECK(allowed(181) == 0b0110);
+  CHECK(allowed(182) == 0b0111);
+  CHECK(allowed(581) == 0b0111);
+  CHECK(allowed(582) == 0b1111);
+}
+
 TEST_CASE("gto stays with its warp while that is ready, then takes the oldest") {
   const auto gto = make("gto", 4);
   const std::vector<uint64_t> age = {30, 10, 20, 40};

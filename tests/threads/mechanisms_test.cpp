@@ -71,6 +71,11 @@ const std::vector<Mechanism> kMechanisms = {
        p.core.parking = PolicyChoice<core::Parking>("at_rays");
        p.core.warps = 4;
      }},
+    {"loads held back for lines in the L1",
+     [](GpuParams& p) {
+       p.core.issue = PolicyChoice<core::IssueScheduler>("ccws");
+       p.memory.l1.size = 1024;
+     }},
     {"two RT entries", [](GpuParams& p) { p.rt.mshr_entries = 2; }},
     {"Vulkan-Sim's stores and headers",
      [](GpuParams& p) {

@@ -1,6 +1,8 @@
 // Tests to the cycle and to the line what the L1's allocation and write policies change, and what fills
 // change at its ports.
 // SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
 #include "tests/support/catch.h"
 #include "tests/timing/memsys/requests.h"
 
@@ -54,6 +56,43 @@ TEST_CASE(
   CHECK(l1.stats().refusals.count(Refusal::SetHeld) == kL2Hit - 2);
   CHECK(start < begin);
   rig.memory().check_drained();
+}
+
+TEST_CASE("the L1 tells of each line that takes a place, who asked for it first, and which line made way") {
+  for (const char* allocate : {"on_fill", "on_miss"}) {
+    CAPTURE(allocate);
+    Params params = bare();
+    params.l1.size = 2 * 128;
+    params.l1.allocate = allocate;
+    MemoryRig rig(params);
+    L1Cache& l1 = rig.l1();
+    REQUIRE(l1.num_lines() == 2);
+    std::vector<LineReplaced> told;
+    l1.line_replaced().listen([&](const LineReplaced& replaced) { told.push_back(replaced); });
+    const auto access = [&](Client client, const Request& request) {
+      const Cycle start = rig.now();
+      rig.run([&](uint32_t, Cycle now) {
+        if (now == start) REQUIRE(l1.access(now, client, request));
+        return kNever;
+      });
+    };
+    const Cycle start = rig.now();
+    rig.run([&](uint32_t, Cycle now) {  // Two clients wait for the first line.
+      if (now == start) REQUIRE(l1.access(now, Client::Lsu, read(0, 7)));
+      if (now == start + 1) REQUIRE(l1.access(now, Client::RtUnit, read(0, 8)));
+      return now == start ? now + 1 : kNever;
+    });
+    access(Client::RtUnit, read(128, 9));
+    access(Client::Lsu, read(0, 10));  // a hit, which replaces nothing
+    access(Client::Lsu, read(256, 11));
+    access(Client::Lsu, {128, 1, true, Traffic::ShaderLocal, 12});
+    REQUIRE(told.size() == 4);
+    CHECK((told[0].by.client == Client::Lsu && told[0].by.token == 7 && !told[0].victim));
+    CHECK((told[1].by.client == Client::RtUnit && told[1].by.token == 9 && !told[1].victim));
+    CHECK(told[0].place != told[1].place);
+    CHECK((told[2].by.token == 11 && told[2].place == told[1].place && told[2].victim == Address{128}));
+    CHECK((told[3].by.token == 12 && told[3].place == told[0].place && told[3].victim == Address{0}));
+  }
 }
 
 TEST_CASE("streaming takes as many misses as MSHRs, whatever the size of the cache") {
