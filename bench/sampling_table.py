@@ -134,7 +134,7 @@ def main():
     parser.add_argument("--launches", action="store_true", help="sample launches, and not the pixels of one")
     parser.add_argument("--seeds", type=int, default=3, help="number of samples of each workload")
     parser.add_argument("--first-seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of the configuration")
     parser.add_argument("--config", default="mobile")
     parser.add_argument("--csv", help="file that gets every row")

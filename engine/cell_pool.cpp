@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/check.h"
+
 namespace glint {
 namespace {
 
 constexpr uint64_t kEnd = ~uint64_t{0};
+constexpr uint64_t kMostWays = 16;  // numbers of threads that a pool can choose from
 
 // CellPool::left_ counts cells that have moved in steps of kMoved, and cells that have thrown in steps of
 // kThrown.
@@ -51,39 +54,52 @@ std::vector<std::vector<uint32_t>> dealt(size_t cells, uint32_t threads, const s
 
 }  // namespace
 
-CellPool::CellPool(const std::vector<Cell*>& cells, uint32_t threads, const std::vector<uint32_t>& homes)
-    : places_(std::make_unique<Place[]>(cells.size())), lists_(dealt(cells.size(), threads, homes)) {
+CellPool::CellPool(const std::vector<Cell*>& cells, const std::vector<uint32_t>& counts,
+                   const std::vector<uint32_t>& homes)
+    : num_cells_(uint32_t(cells.size())), places_(std::make_unique<Place[]>(cells.size())) {
+  GLINT_CHECK(!counts.empty() && counts.size() <= kMostWays, "{} numbers of threads", counts.size());
   for (size_t i = 0; i < cells.size(); ++i) {
     places_[i].cell = cells[i];
     places_[i].progress = cells[i]->progress();
   }
-  for (uint32_t t = 1; t < lists_.num_lists(); ++t) helpers_.emplace_back([this, t] { help(t); });
+  for (const uint32_t count : counts) ways_.emplace_back(dealt(cells.size(), count, homes));
+  const uint32_t threads = ways_[0].lists.num_lists();
+  wanted_ = threads;
+  for (uint32_t t = 1; t < threads; ++t) helpers_.emplace_back([this, t] { help(t); });
 }
 
 CellPool::~CellPool() {
   window_.round.store(kEnd, std::memory_order_release);
   window_.round.notify_all();
+  wanted_.store(num_threads(), std::memory_order_release);
+  wanted_.notify_all();
   for (std::thread& helper : helpers_) helper.join();
 }
 
-bool CellPool::advance(Cycle from, Cycle until) {
+bool CellPool::advance(Cycle from, Cycle until, size_t way) {
   window_.from = from;
   window_.until = until;
-  left_.store(lists_.num_tasks(), std::memory_order_relaxed);
-  const uint64_t round = window_.round.load(std::memory_order_relaxed) + 1;
-  window_.round.store(round, std::memory_order_release);
+  Way& chosen = ways_[way];
+  const uint32_t threads = chosen.lists.num_lists();
+  if (threads == 1) return advance_alone();
+  left_.store(num_cells_, std::memory_order_relaxed);
+  if (wanted_.load(std::memory_order_relaxed) != threads) {
+    wanted_.store(threads, std::memory_order_release);
+    wanted_.notify_all();
+  }
+  const uint64_t round = ++chosen.rounds;
+  window_.round.store(round * kMostWays + way, std::memory_order_release);
   window_.round.notify_all();
-  work(0, round);
+  work(0, chosen.lists, round);
   const uint64_t happened = wait_until(left_, [](uint64_t left) { return left % kMoved == 0; });
   if (happened >= kThrown) rethrow();
   return happened != 0;
 }
 
-bool CellPool::advance_alone(Cycle from, Cycle until) {
-  window_.from = from;
-  window_.until = until;
+// Advances the cells on the caller's thread. The others find no new window, and sleep.
+bool CellPool::advance_alone() {
   uint64_t happened = 0;
-  for (uint32_t i = 0; i < lists_.num_tasks(); ++i) happened += advance(places_[i]);
+  for (uint32_t i = 0; i < num_cells_; ++i) happened += advance(places_[i]);
   if (happened >= kThrown) rethrow();
   return happened != 0;
 }
@@ -92,17 +108,26 @@ void CellPool::help(uint32_t thread) {
   for (uint64_t seen = 0;;) {
     seen = wait_until(window_.round, [seen](uint64_t round) { return round != seen; });
     if (seen == kEnd) return;
-    work(thread, seen);
+    TaskLists& lists = ways_[seen % kMostWays].lists;
+    if (thread < lists.num_lists())
+      work(thread, lists, seen / kMostWays);
+    else
+      rest(thread);
   }
+}
+
+// Sleeps until the thread is wanted.
+void CellPool::rest(uint32_t thread) {
+  for (uint32_t wanted; (wanted = wanted_.load(std::memory_order_acquire)) <= thread;) wanted_.wait(wanted);
 }
 
 // Advances the thread's own cells, and then those of other threads that nobody has taken. Every cell is taken
 // once in a round, so a thread that comes after the end of its round finds none.
-void CellPool::work(uint32_t thread, uint64_t round) {
+void CellPool::work(uint32_t thread, TaskLists& lists, uint64_t round) {
   uint64_t change = 0;
-  for (uint32_t k = 0; k < lists_.num_lists(); ++k) {
-    const uint32_t list = (thread + k) % lists_.num_lists();
-    for (uint32_t task; (task = lists_.take(list, round)) != TaskLists::kNone;)
+  for (uint32_t k = 0; k < lists.num_lists(); ++k) {
+    const uint32_t list = (thread + k) % lists.num_lists();
+    for (uint32_t task; (task = lists.take(list, round)) != TaskLists::kNone;)
       change += advance(places_[task]) - 1;
   }
   if (change == 0) return;
@@ -123,7 +148,7 @@ uint64_t CellPool::advance(Place& place) {
 
 void CellPool::rethrow() {
   std::exception_ptr first;
-  for (size_t i = 0; i < lists_.num_tasks(); ++i)
+  for (size_t i = 0; i < num_cells_; ++i)
     if (std::exception_ptr error = std::exchange(places_[i].error, nullptr); error && !first) first = error;
   if (first) std::rethrow_exception(first);
 }

@@ -67,7 +67,10 @@ void EngineLoop::start_pool() {
   if (threads <= 1 || pool_) return;
   std::vector<Cell*> receivers;
   for (const auto& receiver : receivers_) receivers.push_back(receiver.get());
-  pool_ = std::make_unique<CellPool>(receivers, threads, options_.homes);
+  std::vector<uint32_t> counts{threads};
+  while (options_.threads == 0 && counts.back() > 1) counts.push_back(counts.back() / 2);
+  pool_ = std::make_unique<CellPool>(receivers, counts, options_.homes);
+  if (counts.size() > 1) pace_.emplace(counts.size());
 }
 
 Cycle EngineLoop::run(const Between& between, Cycle look_at) {
@@ -103,23 +106,22 @@ Cycle EngineLoop::run(const Between& between, Cycle look_at) {
 // Returns whether any cell has moved in the turn.
 bool EngineLoop::run_turn(Cycle from) {
   // A number of threads that was asked for is used throughout. Only a free choice depends on the pace.
-  const bool in_parallel = pool_ && (options_.threads || pace_.in_parallel(std::chrono::steady_clock::now(),
-                                                                           [this] { return progress(); }));
+  const size_t way =
+      pace_ ? pace_->way_for(std::chrono::steady_clock::now(), [this] { return progress(); }) : 0;
   const Cycle end = from + options_.turn, step = options_.window ? options_.window : options_.turn;
   bool moved = false;
-  for (Cycle now = from; now < end; now += step)
-    moved |= run_window(now, std::min(now + step, end), in_parallel);
+  for (Cycle now = from; now < end; now += step) moved |= run_window(now, std::min(now + step, end), way);
   if (pool_) return moved;
   const uint64_t now = progress();
   return std::exchange(last_progress_, now) != now;
 }
 
 // Returns whether the pool has seen a cell move.
-bool EngineLoop::run_window(Cycle from, Cycle until, bool in_parallel) {
+bool EngineLoop::run_window(Cycle from, Cycle until, size_t way) {
   ++windows_;
   bool moved = false;
   if (pool_)
-    moved = in_parallel ? pool_->advance(from, until) : pool_->advance_alone(from, until);
+    moved = pool_->advance(from, until, way);
   else
     for (const auto& receiver : receivers_) receiver->advance(from, until);
   for (ChannelBase* channel : delivered_between_) channel->deliver();

@@ -1,9 +1,11 @@
 // Takes cells and channels through simulated time, window by window, on one thread or several.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,8 +28,8 @@ class EngineLoop {
     Cycle turn = 32;             // cycles of a turn, at most the shortest latency of the channels
     bool no_skip = false;        // True: the loop visits every turn. Cells have a switch of their own.
     Cycle watchdog = 1'000'000;  // cycles without progress of any cell before the machine counts as stuck
-    // This is the number of threads. With 0 there are as many as the host has processors, in the phases in
-    // which they are faster than one.
+    // This is the number of threads. With 0 there are as many as the host has processors, or half as many, a
+    // quarter and so on, as long as these are faster.
     uint32_t threads = 1;
     // These are the cycles of a window, at most those of a turn. The last window of a turn ends with the
     // turn. 0 stands for a whole turn.
@@ -63,7 +65,7 @@ class EngineLoop {
   Cycle next_event(Cycle from) const;
   void start_pool();
   bool run_turn(Cycle from);
-  bool run_window(Cycle from, Cycle until, bool in_parallel);
+  bool run_window(Cycle from, Cycle until, size_t way);
   uint64_t progress() const;
   [[noreturn]] void throw_stuck(Cycle now, const std::string& why) const;
 
@@ -75,7 +77,7 @@ class EngineLoop {
   std::vector<ChannelBase*> channels_;
   std::vector<ChannelBase*> delivered_between_;  // those channels that no receiver delivers
   std::unique_ptr<CellPool> pool_;               // exists from the first run on; null with one thread
-  Pace pace_;
+  std::optional<Pace> pace_;          // chooses among the pool's numbers of threads, if it is free to
   uint64_t last_progress_ = 0;        // of all cells after the last turn; unused with a pool
   alignas(64) uint64_t windows_ = 0;  // Every thread reads this number of windows.
 };

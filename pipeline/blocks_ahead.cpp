@@ -88,7 +88,7 @@ class BlocksAhead {
       workers_.push_back(std::make_unique<Worker>(world, endless_, instruction_budget, work_));
       cells.push_back(workers_.back().get());
     }
-    pool_ = std::make_unique<CellPool>(cells, threads);
+    pool_ = std::make_unique<CellPool>(cells, std::vector{threads});
     counts_.progress.num_warps = uint64_t{num_blocks_} * exec::warps_per_block(world);
   }
 

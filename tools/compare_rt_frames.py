@@ -96,7 +96,7 @@ def main():
     parser.add_argument("--glint", default=FOLDER / "glint.csv")
     parser.add_argument("--figure")
     parser.add_argument("--simulate", metavar="GLINT")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--config", default="h200")
     parser.add_argument("--mhz", type=float, default=1980.0, help="clock of the simulated cores")
     options = parser.parse_args()

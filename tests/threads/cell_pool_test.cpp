@@ -63,7 +63,7 @@ TEST_CASE("every cell advances once a window, with any number of threads") {
     std::vector<Cell*> pointers;
     for (int i = 0; i < 7; ++i)
       pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
-    CellPool pool(pointers, threads, {3, 1, 4, 1, 5});
+    CellPool pool(pointers, {threads}, {3, 1, 4, 1, 5});
     CHECK(pool.num_threads() == std::min(threads, 7u));
     std::vector<std::pair<Cycle, Cycle>> windows;
     for (Cycle now = 0; now < 5000; now += 5) {
@@ -75,6 +75,21 @@ TEST_CASE("every cell advances once a window, with any number of threads") {
   }
 }
 
+TEST_CASE("every cell advances once a window, whatever numbers of threads are wanted one after another") {
+  std::vector<std::unique_ptr<RingCell>> cells;
+  std::vector<Cell*> pointers;
+  for (int i = 0; i < 9; ++i)
+    pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
+  CellPool pool(pointers, {6, 3, 1}, {0, 1, 2, 3, 4, 5});
+  std::vector<std::pair<Cycle, Cycle>> windows;
+  for (Cycle now = 0; now < 4000; ++now) {
+    pool.advance(now, now + 1, (now / 3 + now / 40) % 3);
+    windows.push_back({now, now + 1});
+  }
+
+  for (const auto& cell : cells) CHECK(cell->windows == windows);
+}
+
 TEST_CASE("what the first cell throws reaches the caller, and the pool goes on") {
   std::vector<std::unique_ptr<RingCell>> cells;
   std::vector<Cell*> pointers;
@@ -82,7 +97,7 @@ TEST_CASE("what the first cell throws reaches the caller, and the pool goes on")
     pointers.push_back(cells.emplace_back(std::make_unique<RingCell>(nullptr, nullptr, 1, 1)).get());
   cells[3]->throws_at = 12;
   cells[1]->throws_at = 11;
-  CellPool pool(pointers, 3);
+  CellPool pool(pointers, {3});
   pool.advance(0, 10);
 
   CHECK_THROWS_WITH(pool.advance(10, 20), "cell 11");
@@ -102,12 +117,12 @@ TEST_CASE("neither threads nor windows nor homes change what cells tell each oth
 
 TEST_CASE("a pool says whether a cell has moved, on several threads and on one") {
   RingCell moves(nullptr, nullptr, 1, 1), rests(nullptr, nullptr, 1, 1);
-  CellPool pool({&rests, &moves}, 2);
+  CellPool pool({&rests, &moves}, {2, 1});
   CHECK(pool.advance(0, 5));
   CHECK_FALSE(pool.advance(0, 5));  // The cells' progress is the end of the window.
-  CHECK(pool.advance_alone(5, 6));
+  CHECK(pool.advance(5, 6, 1));
   CHECK_FALSE(pool.advance(0, 6));
-  CHECK_FALSE(pool.advance_alone(0, 6));
+  CHECK_FALSE(pool.advance(0, 6, 1));
 }
 
 TEST_CASE("each task of a list is taken once in a round, and none after it") {
@@ -135,27 +150,38 @@ TEST_CASE("a turn is cut into windows that end with it") {
         std::vector<std::pair<Cycle, Cycle>>{{0, 8}, {8, 16}, {16, 20}, {20, 28}, {28, 36}, {36, 40}});
 }
 
-TEST_CASE("trying several threads stops when they are slower, and goes on when they are faster") {
-  // Returns how many windows run on several threads in the first two trials and the stays after them.
-  const auto parallel_windows = [](int serial_cost, int parallel_cost, uint32_t serial_trial,
-                                   uint32_t stays) {
-    Pace pace;
-    Pace::Time now{};
-    uint64_t progress = 0;
-    uint32_t parallel = 0;
-    for (uint32_t i = 0; i < stays * Pace::kStay + 2 * (Pace::kTrial + serial_trial); ++i) {
-      const bool in_parallel = pace.in_parallel(now, [&] { return progress; });
-      parallel += in_parallel;
-      now += std::chrono::microseconds(in_parallel ? parallel_cost : serial_cost);
-      progress += 100;
-    }
-    return parallel;
-  };
+// Returns how many windows each number of threads gets, of which cost[i] is the time of a window.
+std::vector<uint32_t> windows_of(const std::vector<int>& cost, uint32_t windows) {
+  Pace pace(cost.size());
+  Pace::Time now{};
+  uint64_t progress = 0;
+  std::vector<uint32_t> out(cost.size());
+  for (uint32_t i = 0; i < windows; ++i) {
+    const size_t way = pace.way_for(now, [&] { return progress; });
+    ++out[way];
+    now += std::chrono::microseconds(cost[way]);
+    progress += 100;
+  }
+  return out;
+}
 
+TEST_CASE("several threads stop when one is faster, and go on when they are") {
+  constexpr uint32_t kTrial = Pace::kTrial, kLeast = Pace::kLeast, kStay = Pace::kStay;
   // At first the answer counts as one thread's, so that one thread stays for 2 and then 4 lengths.
-  CHECK(parallel_windows(100, 120, Pace::kTrial, 2 + 4) == 2 * Pace::kTrial);
-  CHECK(parallel_windows(100, 80, Pace::kTrial, 1 + 2) == 2 * Pace::kTrial + 3 * Pace::kStay);
-  CHECK(parallel_windows(100, 10, Pace::kLeast, 1 + 2) == 2 * Pace::kTrial + 3 * Pace::kStay);
+  CHECK(windows_of({120, 100}, 6 * kStay + 4 * kTrial) == std::vector{2 * kTrial, 2 * kTrial + 6 * kStay});
+  CHECK(windows_of({80, 100}, 3 * kStay + 4 * kTrial) == std::vector{2 * kTrial + 3 * kStay, 2 * kTrial});
+  CHECK(windows_of({10, 100}, 3 * kStay + 2 * (kTrial + kLeast)) ==
+        std::vector{2 * kTrial + 3 * kStay, 2 * kLeast});
+}
+
+TEST_CASE("the fastest of several numbers of threads goes on, and much slower ones end the trials") {
+  constexpr uint32_t kTrial = Pace::kTrial, kLeast = Pace::kLeast, kStay = Pace::kStay;
+  CHECK(windows_of({50, 30, 40, 70, 130}, kStay + 3 * kTrial + kLeast) ==
+        std::vector<uint32_t>{kTrial, kTrial + kStay, kTrial, kLeast, 0});
+  CHECK(windows_of({30, 50, 10, 10}, kStay + kTrial + kLeast) ==
+        std::vector<uint32_t>{kTrial + kStay, kLeast, 0, 0});
+  CHECK(windows_of({400, 300, 200, 100}, 2 * kStay + 4 * kTrial) ==
+        std::vector<uint32_t>{kTrial, kTrial, kTrial, kTrial + 2 * kStay});
 }
 
 }  // namespace glint

@@ -44,8 +44,8 @@ void add_machine_options(Command command, LaunchOptions& options) {
                    "Step through every cycle, which is slow and gives the same result, to check skipping");
   command
       .add_option("--threads", options.threads,
-                  "Number of host threads, which does not change results; 0: all processors, on the timing "
-                  "machine while they are faster than one")
+                  "Number of host threads, which does not change results; 0: one for each processor that the "
+                  "command may use, or fewer where the timing machine is faster with fewer")
       .in_range(0u, 256u)
       .capture_default_str();
 }

@@ -116,7 +116,7 @@ def number_of(text: Any) -> Any:
 
 def _answers(program: Program, asked: list[dict[str, Any]]) -> list[dict[str, Any]]:
     slices = [asked[i:i + _SLICE] for i in range(0, len(asked), _SLICE)]
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         return [answer for part in pool.map(lambda one: ask(program.path, one)[1:], slices) for answer in part]
 
 

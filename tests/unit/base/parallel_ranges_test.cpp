@@ -10,7 +10,7 @@
 using namespace glint;
 
 TEST_CASE("every thing is in one range, and ranges are the same at any number of threads") {
-  for (const uint32_t threads : {0u, 1u, 2u, 8u})
+  for (const uint32_t threads : {1u, 2u, 8u})
     for (const size_t count : {size_t{0}, size_t{1}, size_t{10}, size_t{11}, size_t{1000}}) {
       std::vector<size_t> first(count, count);
       parallel_ranges(count, 10, threads, [&](size_t begin, size_t end) {
