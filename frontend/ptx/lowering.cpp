@@ -372,6 +372,7 @@ void KernelLowering::lower(const Instruction& inst) {
   if (const std::string part = unsupported_part(inst.words); !part.empty())
     return no_support(inst.position,
                       fmt::format("not supported: '{}', which belongs to {}", joined(inst.words), part));
+  if (options_.check_types) check_types(inst);
   if (lower_control(inst) || lower_special(inst)) return;
   lower_generic(inst);
 }

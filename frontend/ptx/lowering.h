@@ -87,6 +87,9 @@ class KernelLowering {
     unsupported_.error(where(position), what, note);
   }
 
+  // This function is in lowering_types.cpp.
+  void check_types(const Instruction& inst);
+
   // These functions are in lowering_operands.cpp.
   VirtualRegister temporary(RegisterClass c) { return program_.new_register(c); }
   // emit() appends an instruction under the guard of the PTX instruction. compute() appends one without a

@@ -189,6 +189,7 @@ class Parser {
         while (!in_.at_end() && !in_.accept(")")) in_.next();
       } else if (const auto type = type_of(word); type && !has_type) {
         d.type = *type;
+        if (word == "f16x2") d.type.kind = 'b';  // Such a register fits where any 32 bits do.
         has_type = true;
       } else if (!is_pointer_ || !space_of(word)) {
         in_.fail(d.position, fmt::format("'.{}' is not a type of variable that Glint knows", word));

@@ -60,6 +60,9 @@ struct PtxOptions {
   // Changes the program as the hardware's assembler does (frontend/ptx/machine.h), which gives fewer
   // instructions and the same results.
   bool shape = true;
+  // Refuses registers and numbers whose types PTX does not allow where they stand. Without the check, a test
+  // reaches the half of a register that a value of 16 bits leaves open.
+  bool check_types = true;
 };
 
 // Returns the names of a module's kernels, in the order of the text.

@@ -153,7 +153,9 @@ Outcome run(const Recording& recording, const Form& form) {
   Outcome out;
   frontend::Kernel kernel;
   try {
-    kernel = frontend::compile_ptx(kernel_text(form), form.op, "form", {});
+    frontend::PtxOptions options;
+    options.check_types = false;
+    kernel = frontend::compile_ptx(kernel_text(form), form.op, "form", options);
   } catch (const Error& error) {
     out.refused = error.what();
     return out;
