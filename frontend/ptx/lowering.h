@@ -129,6 +129,11 @@ class KernelLowering {
   void report_no_row(const Instruction& inst);
   void note_free_arithmetic(const Instruction& inst, const std::vector<VirtualOperand>& operands);
 
+  // These functions are in lowering_video.cpp.
+  bool lower_video(const Instruction& inst);
+  VirtualOperand video_result(const Instruction& inst, VirtualOperand third);
+  void finish_video(const Instruction& inst, VirtualOperand result, VirtualOperand third, bool adds);
+
   // These functions are in lowering_memory.cpp.
   void lower_memory(const Instruction& inst);
   void lower_atomic(const Instruction& inst, const MemoryForm& form);
