@@ -108,4 +108,32 @@ class ImageLab {
   TexelList texels;  // texels of the last run
 };
 
+// Returns an image of the size that is sampled at its nearest texel.
+inline ImageView view_of(isa::ImageShape shape, uint32_t width, uint32_t height = 1, uint32_t depth = 1,
+                         TexelFormat format = TexelFormat::R32Float) {
+  ImageView out;
+  out.shape = shape;
+  out.width = width, out.height = height, out.depth = depth;
+  out.format = format;
+  out.sampler.mag = out.sampler.min = Filter::Nearest;
+  return out;
+}
+
+// Returns a number that differs from texel to texel.
+inline float pattern(const TexelIndex& at) {
+  return float((at.x * 37 + at.y * 101 + at.z * 53 + at.layer * 211 + at.level * 17) % 97) / 16.0f;
+}
+
+// Adds an image whose texels have the pattern, and returns its handle.
+inline uint32_t add_pattern(ImageLab& lab, const ImageView& image) {
+  const uint32_t handle = lab.add(image);
+  for (TexelIndex at; at.level < image.levels; ++at.level)
+    for (at.layer = 0; at.layer < image.layers; ++at.layer)
+      for (at.z = 0; at.z < image.extent(2, at.level); ++at.z)
+        for (at.y = 0; at.y < image.extent(1, at.level); ++at.y)
+          for (at.x = 0; at.x < image.extent(0, at.level); ++at.x)
+            lab.put(handle, at, floats(pattern(at), 0, 0, 0));
+  return handle;
+}
+
 }  // namespace glint::exec
