@@ -90,7 +90,10 @@ void DestroyDescriptorSetLayout(Device&, VkDescriptorSetLayout layout) {
 void GetDescriptorSetLayoutSupport(Device&, const VkDescriptorSetLayoutCreateInfo* info,
                                    VkDescriptorSetLayoutSupport* out) {
   const DescriptorSetLayout layout = layout_of(*info);
-  out->supported = VK_TRUE;
+  uint64_t descriptors = 0;
+  for (const auto& [number, binding] : layout.bindings)
+    descriptors += binding.is_inline() ? 1 : binding.count;
+  out->supported = descriptors <= kManyDescriptors;
   if (auto* variable = find_in_output<VkDescriptorSetVariableDescriptorCountLayoutSupport>(
           out, VK_STRUCTURE_TYPE_DESCRIPTOR_SET_VARIABLE_DESCRIPTOR_COUNT_LAYOUT_SUPPORT)) {
     variable->maxVariableDescriptorCount = 0;

@@ -150,7 +150,8 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
                                              VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
                                              VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT;
   const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
-  const VkFormatFeatureFlags2 features = image_features_of(format) | attachment_features_of(device, format);
+  VkFormatFeatureFlags2 features = image_features_of(format);
+  if (tiling == VK_IMAGE_TILING_OPTIMAL) features |= attachment_features_of(device, format);
   const VkImageUsageFlags possible = usage_of(features);
   const bool is_usable = features && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
   if (!is_tiled || !is_usable || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/image.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
 
@@ -13,14 +16,35 @@
 namespace glint::vulkan {
 namespace {
 
-exec::ImageView whole_of(const VkImageCreateInfo& info) {
+// Throws Refusal when an image is empty, or larger than the device announces.
+void check_size(const Device& device, const VkImageCreateInfo& info) {
+  const VkPhysicalDeviceLimits& limits = device.physical.core.limits;
+  const auto& [width, height, depth] = info.extent;
+  const uint32_t most = info.imageType == VK_IMAGE_TYPE_1D   ? limits.maxImageDimension1D
+                        : info.imageType == VK_IMAGE_TYPE_2D ? limits.maxImageDimension2D
+                                                             : limits.maxImageDimension3D;
+  const auto [least, longest] = std::minmax({width, height, depth});
+  if (!least || longest > most)
+    throw Refusal(fmt::format("an image of {} x {} x {} texels is not there: each side has 1 to {} texels",
+                              width, height, depth, most));
+  if (!info.arrayLayers || info.arrayLayers > limits.maxImageArrayLayers)
+    throw Refusal(fmt::format("an image of {} layers is not there: there are 1 to {}", info.arrayLayers,
+                              limits.maxImageArrayLayers));
+  if (const auto levels = uint32_t(std::bit_width(longest)); !info.mipLevels || info.mipLevels > levels)
+    throw Refusal(fmt::format("an image of {} x {} x {} texels has 1 to {} levels, and not {}", width, height,
+                              depth, levels, info.mipLevels));
+}
+
+exec::ImageView whole_of(const Device& device, const VkImageCreateInfo& info) {
   exec::ImageView out;
   out.format = texel_format_of(info.format);
+  check_size(device, info);
   if (info.flags & VK_IMAGE_CREATE_SPARSE_BINDING_BIT)
     throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse images are not there");
   if (!(kSamples & info.samples))
-    throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT,
-                  fmt::format("images of {} samples are not there, only of 1 and 4", int(info.samples)));
+    throw Refusal(
+        VK_ERROR_FEATURE_NOT_PRESENT,
+        fmt::format("images of {} samples are not there, only of 1, 2, 4, 8 and 16", int(info.samples)));
   out.samples = info.samples;
   out.width = info.extent.width, out.height = info.extent.height, out.depth = info.extent.depth;
   out.levels = info.mipLevels, out.layers = info.arrayLayers * out.samples;
@@ -53,7 +77,7 @@ std::byte* texel_of(const Device& device, const Image& image, const exec::TexelI
 
 VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out) {
   auto made = std::make_unique<Image>();
-  made->whole = whole_of(*info);
+  made->whole = whole_of(device, *info);
   if (made->whole.bytes() > kMaxAllocationBytes)
     throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                   fmt::format("an image has at most {} bytes", kMaxAllocationBytes));
@@ -91,9 +115,9 @@ void GetImageMemoryRequirements2(Device&, const VkImageMemoryRequirementsInfo2* 
                                  VkMemoryRequirements2* out) {
   answer_requirements(out, info->image->whole.bytes());
 }
-void GetDeviceImageMemoryRequirements(Device&, const VkDeviceImageMemoryRequirements* info,
+void GetDeviceImageMemoryRequirements(Device& device, const VkDeviceImageMemoryRequirements* info,
                                       VkMemoryRequirements2* out) {
-  answer_requirements(out, whole_of(*info->pCreateInfo).bytes());
+  answer_requirements(out, whole_of(device, *info->pCreateInfo).bytes());
 }
 
 // Nothing is sparse.

@@ -41,8 +41,10 @@ VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out
 void DestroyImage(Device& device, VkImage image);
 VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset);
 
-// Images have one sample or four.
-inline constexpr VkSampleCountFlags kSamples = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT;
+// Each bit is a number of samples that images may have.
+inline constexpr VkSampleCountFlags kSamples = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_2_BIT |
+                                               VK_SAMPLE_COUNT_4_BIT | VK_SAMPLE_COUNT_8_BIT |
+                                               VK_SAMPLE_COUNT_16_BIT;
 
 // Returns the format that the simulated GPU has for a format of Vulkan, or nothing.
 std::optional<exec::TexelFormat> format_of(VkFormat format);

@@ -41,6 +41,8 @@ namespace glint::vulkan {
 inline constexpr VkDeviceSize kHeapBytes = VkDeviceSize{16} << 30;
 // An address names its allocation in the upper 32 bits (memsys/address_space.h).
 inline constexpr VkDeviceSize kMaxAllocationBytes = VkDeviceSize{1} << 32;
+// A set has many bindings, each of which may be an array.
+inline constexpr uint32_t kManyDescriptors = 1 << 20;
 inline constexpr uint32_t kAllMemoryTypes = 0b111;
 inline constexpr uint32_t kMaxPushConstantBytes = 256;
 inline constexpr VkDeviceSize kHostPointerAlignment = 4096;

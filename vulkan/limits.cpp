@@ -16,8 +16,6 @@
 namespace glint::vulkan {
 namespace {
 
-// A set has kMaxBindings bindings, each of which may be an array.
-constexpr uint32_t kManyDescriptors = 1 << 20;
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_RAYGEN_BIT_KHR |
                                        VK_SHADER_STAGE_ANY_HIT_BIT_KHR | VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR |
                                        VK_SHADER_STAGE_MISS_BIT_KHR | VK_SHADER_STAGE_INTERSECTION_BIT_KHR |

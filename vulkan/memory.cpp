@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/memory.h"
 
+#include <bit>
 #include <fmt/format.h>
 #include <memory>
 
@@ -58,6 +59,9 @@ Address bind_window(Device& device, const std::string& name, VkDeviceSize bytes,
 }
 
 VkResult AllocateMemory(Device& device, const VkMemoryAllocateInfo* info, VkDeviceMemory* out) {
+  if (constexpr auto kTypes = uint32_t(std::bit_width(kAllMemoryTypes)); info->memoryTypeIndex >= kTypes)
+    throw Refusal(
+        fmt::format("memory type {} is not there, only 0 to {}", info->memoryTypeIndex, kTypes - 1));
   auto made = std::make_unique<DeviceMemory>();
   made->bytes = info->allocationSize;
   import_or_allocate(device, *made, info);

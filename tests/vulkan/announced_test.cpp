@@ -96,8 +96,8 @@ TEST_CASE("a device that says Vulkan 1.3 has its required limits", "[portable]")
   CHECK(has.p13.maxInlineUniformTotalSize >= 256);
 }
 
-// The limits promise four samples only for formats that can be attachments.
-TEST_CASE("an image of four samples is promised only where a format can be an attachment", "[portable]") {
+// The limits promise several samples only for formats that can be attachments.
+TEST_CASE("an image of several samples is promised only where a format can be an attachment", "[portable]") {
   const Client client;
   for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32_SFLOAT, VK_FORMAT_D16_UNORM}) {
     VkFormatProperties can;
@@ -111,6 +111,48 @@ TEST_CASE("an image of four samples is promised only where a format can be an at
         &properties);
     if (result == VK_SUCCESS)
       CHECK(((properties.sampleCounts & VK_SAMPLE_COUNT_4_BIT) != 0) == is_attachment);
+  }
+}
+
+// A program that asks for an image in linear tiling would make one that cannot be attached.
+TEST_CASE("a use of an image is promised only where its tiling has the feature", "[portable]") {
+  const Client client;
+  constexpr std::pair<VkFormatFeatureFlags, VkImageUsageFlags> kUses[] = {
+      {VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, VK_IMAGE_USAGE_SAMPLED_BIT},
+      {VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, VK_IMAGE_USAGE_STORAGE_BIT},
+      {VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
+      {VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT}};
+  for (int format = VK_FORMAT_R4G4_UNORM_PACK8; format <= VK_FORMAT_ASTC_12x12_SRGB_BLOCK; ++format)
+    for (const VkImageTiling tiling : {VK_IMAGE_TILING_OPTIMAL, VK_IMAGE_TILING_LINEAR}) {
+      VkFormatProperties can;
+      vkGetPhysicalDeviceFormatProperties(client.physical, VkFormat(format), &can);
+      const VkFormatFeatureFlags features =
+          tiling == VK_IMAGE_TILING_OPTIMAL ? can.optimalTilingFeatures : can.linearTilingFeatures;
+      for (const auto& [feature, usage] : kUses) {
+        VkImageFormatProperties properties{};
+        const VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+            client.physical, VkFormat(format), VK_IMAGE_TYPE_2D, tiling, usage, 0, &properties);
+        INFO("format " << format << ", tiling " << tiling << ", usage " << usage);
+        CHECK((result == VK_SUCCESS) == ((features & feature) != 0));
+      }
+    }
+}
+
+TEST_CASE("a set with more descriptors than the limit says is not supported") {
+  const Client client;
+  VkPhysicalDeviceMaintenance3Properties limits{};
+  limits.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &limits, {}};
+  vkGetPhysicalDeviceProperties2(client.physical, &properties);
+  for (const uint32_t more : {0u, 1u}) {
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                               limits.maxPerSetDescriptors + more,
+                                               VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    const VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr,
+                                               0, 1, &binding};
+    VkDescriptorSetLayoutSupport support{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_SUPPORT, nullptr, VK_FALSE};
+    vkGetDescriptorSetLayoutSupport(client.device, &info, &support);
+    CHECK(support.supported == (more ? VK_FALSE : VK_TRUE));
   }
 }
 

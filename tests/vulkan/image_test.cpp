@@ -160,28 +160,29 @@ TEST_CASE("a blit halves and mirrors a picture", "[portable][graphics]") {
   CHECK(out.as<float>()[1] == 4);
 }
 
-TEST_CASE("a shader stores and fetches each sample, and a resolve takes their mean", "[portable][graphics]") {
+// Stores to each sample of an image, fetches from a copy of it, and takes the mean.
+void check_samples(VkSampleCountFlagBits count) {
   Client::Options options;
   options.features.shaderStorageImageMultisample = VK_TRUE;
   Client client(options);
   const VkExtent3D extent{4, 2, 1};
-  const BoundImage samples =
-      client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1, {}, VK_SAMPLE_COUNT_4_BIT);
-  const BoundImage copied =
-      client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1, {}, VK_SAMPLE_COUNT_4_BIT);
+  const BoundImage samples = client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1, {}, count);
+  const BoundImage copied = client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent, 1, 1, {}, count);
   const BoundImage mean = client.image(VK_FORMAT_R32G32B32A32_SFLOAT, extent);
   const MappedBuffer out = client.buffer(8 * 16), fetched = client.buffer(8 * 4);
   const std::string head = "#version 460\nlayout(local_size_x = 4, local_size_y = 2) in;\n";
   const std::string place = "void main() { ivec2 p = ivec2(gl_LocalInvocationID.xy);\n";
   const ComputePipeline store = client.pipeline(
       head + "layout(set = 0, binding = 1, rgba32f) uniform writeonly image2DMS picture;\n" + place +
-          "for (int s = 0; s < 4; ++s) imageStore(picture, p, s, vec4(p.x + 10 * p.y, s * s, s, 1)); }\n",
+          "for (int s = 0; s < imageSamples(picture); ++s) imageStore(picture, p, s, vec4(p.x + 10 * p.y, s "
+          "* s, s, 1)); }\n",
       {{kStorage, kStorageImage}});
-  const ComputePipeline fetch = client.pipeline(
-      head + "layout(set = 0, binding = 0) buffer F { float f[]; };\n" +
-          "layout(set = 0, binding = 1) uniform sampler2DMS picture;\n" + place +
-          "f[p.y * 4 + p.x] = texelFetch(picture, p, p.x).y + 100 * textureSamples(picture); }\n",
-      {{kStorage, kTexture}});
+  const ComputePipeline fetch =
+      client.pipeline(head + "layout(set = 0, binding = 0) buffer F { float f[]; };\n" +
+                          "layout(set = 0, binding = 1) uniform sampler2DMS picture;\n" + place +
+                          "f[p.y * 4 + p.x] = texelFetch(picture, p, p.x % textureSamples(picture)).y + 100 "
+                          "* textureSamples(picture); }\n",
+                      {{kStorage, kTexture}});
   const VkSampler sampler = client.sampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
   const VkDescriptorSet to_store =
       set_with_image(client, store, fetched, kStorageImage, {nullptr, samples.view, VK_IMAGE_LAYOUT_GENERAL});
@@ -201,15 +202,24 @@ TEST_CASE("a shader stores and fetches each sample, and a resolve takes their me
   REQUIRE(client.dispatch(fetch, to_fetch, {1, 1, 1}) == VK_SUCCESS);
   REQUIRE(client.download(mean, out, extent) == VK_SUCCESS);
 
+  const auto n = uint32_t(count);
   for (uint32_t y = 0; y < 2; ++y)
     for (uint32_t x = 0; x < 4; ++x) {
-      REQUIRE(fetched.as<float>()[y * 4 + x] == float(400 + x * x));
+      REQUIRE(fetched.as<float>()[y * 4 + x] == float(100 * n + (x % n) * (x % n)));
       if (x == 3) continue;
       const float* const texel = &out.as<float>()[(y * 4 + x) * 4];
       CHECK(texel[0] == float(x + 1 + 10 * y));
-      CHECK(texel[1] == 3.5f);
-      CHECK(texel[2] == 1.5f);
+      CHECK(texel[1] == float((n - 1) * (2 * n - 1)) / 6.0f);
+      CHECK(texel[2] == float(n - 1) / 2.0f);
     }
+}
+
+TEST_CASE("a shader stores and fetches each sample, and a resolve takes their mean", "[portable][graphics]") {
+  check_samples(VK_SAMPLE_COUNT_4_BIT);
+}
+
+TEST_CASE("images of 2, 8 and 16 samples are stored to, fetched and resolved") {
+  check_samples(GENERATE(VK_SAMPLE_COUNT_2_BIT, VK_SAMPLE_COUNT_8_BIT, VK_SAMPLE_COUNT_16_BIT));
 }
 
 TEST_CASE("a clear of a stencil image takes the stencil's value", "[graphics]") {

@@ -106,6 +106,66 @@ TEST_CASE("more memory than the heap has is refused, and the rest stays usable")
   CHECK(client.buffer(64).data != nullptr);
 }
 
+TEST_CASE(
+    "a dispatch of more workgroups than an axis may have is refused, and an indirect one loses the device") {
+  Client client;
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(client.physical, &properties);
+  const uint32_t most = properties.limits.maxComputeWorkGroupCount[1];
+  const MappedBuffer out = client.buffer(256), size = client.buffer(12);
+  const ComputePipeline pipeline = client.pipeline(kHead + "void main() { a[0] = 1; }\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+  CHECK(client.dispatch(pipeline, set, {1, most + 1, 1}) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK_THAT(joined(client.messages),
+             Catch::Contains("vkCmdDispatch: a dispatch of 1 x 4194304 x 1 workgroups"));
+  CHECK(client.run([&](VkCommandBuffer into) {
+    vkCmdBindPipeline(into, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+    vkCmdDispatchBase(into, 0, most, 0, 1, 1, 1);
+  }) == VK_ERROR_VALIDATION_FAILED_EXT);
+
+  size.as<uint32_t>()[0] = 1, size.as<uint32_t>()[1] = most + 1, size.as<uint32_t>()[2] = 1;
+  CHECK(client.run([&](VkCommandBuffer into) {
+    vkCmdBindPipeline(into, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+    vkCmdBindDescriptorSets(into, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0, nullptr);
+    vkCmdDispatchIndirect(into, size.buffer, 0);
+  }) < 0);
+  CHECK(vkDeviceWaitIdle(client.device) == VK_ERROR_DEVICE_LOST);
+  CHECK(out.as<uint32_t>()[0] == 0);
+}
+
+TEST_CASE("an image that is empty, too wide or has too many levels is refused") {
+  Client client;
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(client.physical, &properties);
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = VK_FORMAT_R8_UNORM, info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const auto make = [&](VkExtent3D extent, uint32_t levels, uint32_t layers) {
+    info.extent = extent, info.mipLevels = levels, info.arrayLayers = layers;
+    VkImage image = nullptr;
+    const VkResult result = vkCreateImage(client.device, &info, nullptr, &image);
+    if (result == VK_SUCCESS) vkDestroyImage(client.device, image, nullptr);
+    return result;
+  };
+  const uint32_t most = properties.limits.maxImageDimension2D;
+  CHECK(make({most, 1, 1}, 1, 1) == VK_SUCCESS);
+  CHECK(make({most + 1, 1, 1}, 1, 1) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK(make({0, 8, 1}, 1, 1) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK(make({8, 5, 1}, 4, 1) == VK_SUCCESS);
+  CHECK(make({8, 5, 1}, 5, 1) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK(make({8, 8, 1}, 1, 0) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK(make({8, 8, 1}, 1, properties.limits.maxImageArrayLayers + 1) == VK_ERROR_VALIDATION_FAILED_EXT);
+}
+
+TEST_CASE("memory of a type that the device has not is refused") {
+  Client client;
+  const VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, 64, 3};
+  VkDeviceMemory memory = nullptr;
+  CHECK(vkAllocateMemory(client.device, &info, nullptr, &memory) == VK_ERROR_VALIDATION_FAILED_EXT);
+  CHECK_THAT(joined(client.messages), Catch::Contains("memory type 3 is not there, only 0 to 2"));
+}
+
 TEST_CASE("a feature that is not announced is refused by name") {
   Client::Options options;
   options.features.geometryShader = VK_TRUE;
