@@ -12,11 +12,12 @@
 namespace glint::frontend {
 namespace {
 
-std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name,
-                   const std::string& entry_point, const BackendOptions& options) {
+// The name of a module is in its program once, so it is not in the key: applications make the same module
+// again under another name for each pipeline.
+std::string key_of(const std::vector<uint32_t>& spirv, const std::string& entry_point,
+                   const BackendOptions& options) {
   ByteWriter key;
   key.put(std::string("program"));
-  key.put(name);
   key.put(entry_point);
   key.put(options.max_registers);
   key.put(options.schedule);
@@ -30,13 +31,15 @@ std::string key_of(const std::vector<uint32_t>& spirv, const std::string& name,
   return key.take();
 }
 
-std::optional<CompiledModule> find_program(ShaderCache& cache, const std::string& key) {
+std::optional<CompiledModule> find_program(ShaderCache& cache, const std::string& key,
+                                           const std::string& name) {
   const std::optional<std::string> bytes = cache.find(key);
   if (!bytes) return std::nullopt;
   ByteReader in(*bytes);
   CompiledModule out;
   in.get(out.simplified);
   out.program = get_program(in);
+  out.program.name = name;
   return in.is_good() ? std::optional(std::move(out)) : std::nullopt;
 }
 
@@ -59,9 +62,9 @@ std::optional<isa::Stage> stage_of_file(const std::string& path) {
 CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::string& name,
                               const std::string& entry_point, const BackendOptions& options,
                               Diagnostics& warnings, ShaderCache* cache, Validity validity) {
-  const std::string key = cache ? key_of(spirv, name, entry_point, options) : std::string();
+  const std::string key = cache ? key_of(spirv, entry_point, options) : std::string();
   if (cache)
-    if (std::optional<CompiledModule> found = find_program(*cache, key)) return std::move(*found);
+    if (std::optional<CompiledModule> found = find_program(*cache, key, name)) return std::move(*found);
   CompiledModule out;
   const size_t warnings_before = warnings.messages().size();
   out.simplified = simplify(spirv, name, warnings, validity);

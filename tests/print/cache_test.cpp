@@ -169,6 +169,29 @@ TEST_CASE(
   CHECK(missing == 2);  // the SPIR-V contains the source text
 }
 
+TEST_CASE(
+    "a module is compiled once, whatever its name is, and each program has the name that was asked for") {
+  const Folder folder;
+  const std::string shader = folder.write("a.comp", kShader);
+  folder.write("part.glsl", "uint part() { return 1; }\n");
+  frontend::GlslOptions glsl;
+  glsl.defines = {{"VALUE", "3"}};
+  const std::vector<uint32_t> spirv = frontend::glsl_to_spirv(shader, glsl);
+  ShaderCache cache = folder.cache();
+  Diagnostics warnings;
+  const auto compile = [&](const char* name) {
+    return frontend::compile_module(spirv, name, "main", {}, warnings, &cache, frontend::Validity::Known)
+        .program;
+  };
+  const isa::Program first = compile("shader 1"), second = compile("shader 2");
+  CHECK(cache.counts().missing == 1);
+  CHECK(cache.counts().found == 1);
+  CHECK(first.name == "shader 1");
+  CHECK(second.name == "shader 2");
+  CHECK(second.files == first.files);
+  CHECK(second.code.size() == first.code.size());
+}
+
 TEST_CASE("an include file that appears in a folder that is searched earlier is seen") {
   const Folder folder;
   fs::create_directories(folder.path / "later");
