@@ -19,7 +19,7 @@ constexpr size_t kWindow = 32 << 10;  // bytes before a part that it may refer t
 // to 6 % larger.
 constexpr int kLevel = 3;
 constexpr int kRaw = -MAX_WBITS;        // asks zlib for blocks alone, without a header
-constexpr size_t kWholeByte = 16;       // bytes that end a part which is not the last, and more
+constexpr size_t kWholeByte = 16;       // room for the block that ends a part which is not the last
 constexpr char kHeader[] = "\x78\x5e";  // a window of 32 KiB, a level below the default
 
 struct Part {
@@ -42,7 +42,8 @@ Part part_of(std::span<const uint8_t> bytes, size_t begin, size_t end) {
   stream.avail_out = uInt(out.blocks.size());
   const bool is_last = end == bytes.size();
   const int done = deflate(&stream, is_last ? Z_FINISH : Z_SYNC_FLUSH);
-  GLINT_CHECK_EQ(done, is_last ? Z_STREAM_END : Z_OK);
+  GLINT_CHECK(done == (is_last ? Z_STREAM_END : Z_OK) && stream.avail_out > 0,
+              "zlib did not compress {} bytes as a whole", end - begin);
   out.blocks.resize(stream.total_out);
   deflateEnd(&stream);
   return out;
