@@ -42,6 +42,23 @@ inline uint32_t oldest_of(uint64_t warps, const IssueView& view) {
   return oldest;
 }
 
+// Remembers the warp that was issued last, for policies that go on with it.
+class LastIssued {
+ public:
+  // Returns whether the warp is ready. A new warp in the same slot is not the warp that was issued last.
+  bool is_ready(const IssueView& view) const { return (view.ready >> warp_ & 1) && view.age[warp_] == age_; }
+  uint32_t warp() const { return warp_; }
+  // Notes that `warp` is issued, and returns it.
+  uint32_t note(uint32_t warp, const IssueView& view) {
+    age_ = view.age[warp];
+    return warp_ = warp;
+  }
+
+ private:
+  uint32_t warp_ = 0;
+  uint64_t age_ = ~uint64_t{0};
+};
+
 // Contract (tests/contract/issue_scheduler_test.cpp):
 //  - pick() returns the number of a set bit of `ready`.
 //  - The pick is a function of the views so far and of the policy's own state: the same views give the same

@@ -19,12 +19,13 @@ constexpr size_t kWindow = 32 << 10;  // bytes before a part that it may refer t
 // to 6 % larger.
 constexpr int kLevel = 3;
 constexpr int kRaw = -MAX_WBITS;        // asks zlib for blocks alone, without a header
-constexpr size_t kWholeByte = 16;       // room for the block that ends a part which is not the last
+constexpr size_t kRoomForEnd = 16;      // room for the block that ends a part which is not the last
 constexpr char kHeader[] = "\x78\x5e";  // a window of 32 KiB, a level below the default
 
 struct Part {
   std::string blocks;  // RFC 1951
-  uLong check = 0;     // Adler-32
+  size_t bytes = 0;    // before they were compressed
+  uLong check = 0;     // Adler-32 of these
 };
 
 // Compresses [begin, end). A part that is not the last ends with an empty block, which fills its last byte.
@@ -34,8 +35,8 @@ Part part_of(std::span<const uint8_t> bytes, size_t begin, size_t end) {
   GLINT_CHECK_EQ(begun, Z_OK);
   const size_t before = std::min(begin, kWindow);
   if (before) deflateSetDictionary(&stream, bytes.data() + begin - before, uInt(before));
-  Part out{std::string(deflateBound(&stream, uLong(end - begin)) + kWholeByte, '\0'), adler32(0, nullptr, 0)};
-  out.check = adler32(out.check, bytes.data() + begin, uInt(end - begin));
+  Part out{std::string(deflateBound(&stream, uLong(end - begin)) + kRoomForEnd, '\0'), end - begin};
+  out.check = adler32(adler32(0, nullptr, 0), bytes.data() + begin, uInt(end - begin));
   stream.next_in = const_cast<Bytef*>(bytes.data() + begin);  // zlib does not write there
   stream.avail_in = uInt(end - begin);
   stream.next_out = reinterpret_cast<Bytef*>(out.blocks.data());
@@ -58,10 +59,9 @@ std::string zlib_stream(std::span<const uint8_t> bytes, uint32_t threads) {
   });
   std::string out = kHeader;
   uLong check = adler32(0, nullptr, 0);
-  for (size_t i = 0; i < parts.size(); ++i) {
-    out += parts[i].blocks;
-    check =
-        adler32_combine(check, parts[i].check, z_off_t(std::min(bytes.size(), (i + 1) * kPart) - i * kPart));
+  for (const Part& part : parts) {
+    out += part.blocks;
+    check = adler32_combine(check, part.check, z_off_t(part.bytes));
   }
   for (int shift = 24; shift >= 0; shift -= 8) out += char(check >> shift & 0xff);
   return out;

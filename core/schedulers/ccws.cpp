@@ -82,8 +82,7 @@ class Ccws final : public IssueScheduler, public L1Listener {
     if (view.now >= raised_until_ || !at_memory) return view.ready;
     uint64_t allowed = view.ready & ~at_memory;
     uint64_t sum = 0;
-    const uint64_t most = uint64_t{base_} * uint64_t(std::popcount(view.resident));
-    for (uint64_t left = view.resident; left && sum < most;) {
+    for (uint64_t left = view.resident; left && sum < base_sum(view);) {
       const uint32_t warp = highest(left, view);
       allowed |= at_memory & uint64_t{1} << warp;
       left &= ~(uint64_t{1} << warp);
@@ -93,9 +92,7 @@ class Ccws final : public IssueScheduler, public L1Listener {
   }
   uint32_t pick(const IssueView& view) override {
     ++issued_;
-    if (!(view.ready >> last_ & 1) || view.age[last_] != last_age_) last_ = oldest_of(view.ready, view);
-    last_age_ = view.age[last_];
-    return last_;
+    return last_.is_ready(view) ? last_.warp() : last_.note(oldest_of(view.ready, view), view);
   }
 
  private:
@@ -108,6 +105,10 @@ class Ccws final : public IssueScheduler, public L1Listener {
 
   std::vector<Address>::iterator set_of(uint32_t warp, Address line) {
     return tags_.begin() + ptrdiff_t((size_t{warp} * sets_ + line / kSetStride % sets_) * ways_);
+  }
+  // Returns the sum of the base scores of all warps.
+  uint64_t base_sum(const IssueView& view) const {
+    return uint64_t{base_} * uint64_t(std::popcount(view.resident));
   }
   uint64_t score(uint32_t warp, const IssueView& view) const {
     const Score& at = scores_[warp];
@@ -126,10 +127,10 @@ class Ccws final : public IssueScheduler, public L1Listener {
   // Gives the warps that have lost lines since the last call the score of the paper's equation: lost lines
   // for each instruction issued so far, times the factor and the sum of all base scores.
   void raise_scores(const IssueView& view) {
+    if (!is_hit_) return;
+    const uint64_t raised = lost_ * throttle_ * base_sum(view) / std::max<uint64_t>(issued_, 1);
     for (; is_hit_; is_hit_ &= is_hit_ - 1) {
       const auto warp = uint32_t(std::countr_zero(is_hit_));
-      const uint64_t all = uint64_t{base_} * uint64_t(std::popcount(view.resident));
-      const uint64_t raised = lost_ * throttle_ * all / std::max<uint64_t>(issued_, 1);
       scores_[warp] = {view.age[warp], view.now + (raised > base_ ? raised - base_ : 0)};
       raised_until_ = std::max(raised_until_, scores_[warp].until);
     }
@@ -143,8 +144,7 @@ class Ccws final : public IssueScheduler, public L1Listener {
   uint64_t is_hit_ = 0;  // bit i: warp i has lost locality since the scores were raised last
   uint64_t lost_ = 0, issued_ = 0;
   Cycle raised_until_ = 0;  // No score is above the base from then on.
-  uint32_t last_ = 0;
-  uint64_t last_age_ = ~uint64_t{0};
+  LastIssued last_;
 };
 
 const Register<IssueScheduler, Ccws> registered;

@@ -24,21 +24,17 @@ class GreedyThenYoungest final : public IssueScheduler {
   GreedyThenYoungest(Params, Context) {}
 
   uint32_t pick(const IssueView& view) override {
-    // A new warp in the same slot is not the warp that was issued last.
-    if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
+    if (last_.is_ready(view)) return last_.warp();
     uint32_t youngest = uint32_t(std::countr_zero(view.ready));
     for (uint64_t rest = view.ready & (view.ready - 1); rest; rest &= rest - 1) {
       const uint32_t i = uint32_t(std::countr_zero(rest));
       if (view.age[i] > view.age[youngest]) youngest = i;
     }
-    last_ = youngest;
-    last_age_ = view.age[youngest];
-    return youngest;
+    return last_.note(youngest, view);
   }
 
  private:
-  uint32_t last_ = 0;
-  uint64_t last_age_ = ~uint64_t{0};
+  LastIssued last_;
 };
 
 const Register<IssueScheduler, GreedyThenYoungest> registered;

@@ -21,16 +21,11 @@ class GreedyThenOldest final : public IssueScheduler {
   GreedyThenOldest(Params, Context) {}
 
   uint32_t pick(const IssueView& view) override {
-    // A new warp in the same slot is not the warp that was issued last.
-    if ((view.ready >> last_ & 1) && view.age[last_] == last_age_) return last_;
-    last_ = oldest_of(view.ready, view);
-    last_age_ = view.age[last_];
-    return last_;
+    return last_.is_ready(view) ? last_.warp() : last_.note(oldest_of(view.ready, view), view);
   }
 
  private:
-  uint32_t last_ = 0;
-  uint64_t last_age_ = ~uint64_t{0};
+  LastIssued last_;
 };
 
 const Register<IssueScheduler, GreedyThenOldest> registered;
