@@ -43,6 +43,8 @@ struct Scope {
   bool is_function = false;                // names not found here are looked up in the module
 };
 
+struct VideoForm;  // what the words of a video instruction ask for (lowering_video.cpp)
+
 // Holds a move of a result to a register that is wider or narrower than the row's.
 struct LateMove {
   uint16_t op;
@@ -131,7 +133,7 @@ class KernelLowering {
 
   // These functions are in lowering_video.cpp.
   bool lower_video(const Instruction& inst);
-  VirtualOperand video_result(const Instruction& inst, VirtualOperand third);
+  VirtualOperand video_result(const Instruction& inst, const VideoForm& form, VirtualOperand third);
   void finish_video(const Instruction& inst, VirtualOperand result, VirtualOperand third, bool adds);
 
   // These functions are in lowering_memory.cpp.

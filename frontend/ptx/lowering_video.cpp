@@ -16,8 +16,6 @@ namespace glint::frontend::ptx {
 
 using isa::OperandKind;
 
-namespace {
-
 // Says what the words of a video instruction ask for (PTX ISA, "Scalar Video Instructions").
 struct VideoForm {
   std::string op;
@@ -27,6 +25,8 @@ struct VideoForm {
   bool is_known = true;  // Every word has a meaning, and the types are there.
   bool has_unsupported_word = false;
 };
+
+namespace {
 
 void read_word(const std::string& word, VideoForm& form) {
   static constexpr std::array<std::string_view, 6> kCompare{"eq", "ne", "lt", "le", "gt", "ge"};
@@ -111,13 +111,13 @@ bool KernelLowering::lower_video(const Instruction& inst) {
   }
   const VirtualOperand third =
       wanted == 4 ? source(inst.operands[3], OperandKind::Src32, form.to) : VirtualOperand::value(0);
-  finish_video(inst, video_result(inst, third), third, form.adds);
+  finish_video(inst, video_result(inst, form, third), third, form.adds);
   return true;
 }
 
 // Returns the result of the first operation.
-VirtualOperand KernelLowering::video_result(const Instruction& inst, VirtualOperand third) {
-  const VideoForm form = video_form(inst.words);
+VirtualOperand KernelLowering::video_result(const Instruction& inst, const VideoForm& form,
+                                            VirtualOperand third) {
   const auto number = [&](const Operand& o, const Type& type) {
     const RegisterPart part = register_part(o);
     const VirtualOperand value = source(whole_of(o), OperandKind::Src32, type);

@@ -49,4 +49,21 @@ inline size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
+// Returns the words that `of_lane` gives for the lanes of a warp.
+inline std::vector<uint32_t> expected(uint32_t (*of_lane)(uint32_t)) {
+  std::vector<uint32_t> out;
+  for (uint32_t lane = 0; lane < 32; ++lane) out.push_back(of_lane(lane));
+  return out;
+}
+
+// Returns what the compiler says against a text, or "no error".
+inline std::string message_of(const std::string& text) {
+  try {
+    frontend::compile_ptx(text, "test.ptx", "", {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
 }  // namespace glint
