@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "exec/texture_address.h"
-
 namespace glint::exec {
 
 using isa::ImageRequest;
@@ -30,8 +28,7 @@ size_t num_data(const isa::OpRow& row) {
   return slots - ImageSlots(row).data;
 }
 
-SampleRequest request_of(const isa::ImageAccess& op, const ImageSlots& slots, const ImageLane& lane,
-                         const ImageView& image) {
+SampleRequest request_of(const isa::ImageAccess& op, const ImageSlots& slots, const ImageLane& lane) {
   SampleRequest request;
   request.shape = op.shape;
   const auto count = size_t(isa::num_coordinates(op.shape));
@@ -39,14 +36,11 @@ SampleRequest request_of(const isa::ImageAccess& op, const ImageSlots& slots, co
   if (isa::has_layers(op.shape)) request.layer = lane.integer(slots.layer);
   if (op.lod == isa::ImageLod::Level) request.lod = lane.number(slots.level);
   if (op.lod == isa::ImageLod::Gradients) {
-    Gradient dx{}, dy{};
+    request.has_gradients = true;
     for (size_t i = 0; i < count; ++i) {
-      dx[i] = lane.number(slots.level + i);
-      dy[i] = lane.number(slots.level + count + i);
+      request.dx[i] = lane.number(slots.level + i);
+      request.dy[i] = lane.number(slots.level + count + i);
     }
-    const bool cube = isa::is_cube(op.shape);
-    if (cube) dx = cube_gradient(request.at, dx), dy = cube_gradient(request.at, dy);
-    request.lod = level_of_detail(image, cube ? 2 : int(count), dx, dy);
   }
   if (op.has_offset)
     for (size_t i = 0; i < 3; ++i) request.offset[i] = int8_t(lane.word(slots.offset) >> (8 * i));

@@ -41,8 +41,7 @@ class ImageLane {
 };
 
 // Returns what a sampling op asks of an image for one lane.
-SampleRequest request_of(const isa::ImageAccess& op, const ImageSlots& slots, const ImageLane& lane,
-                         const ImageView& image);
+SampleRequest request_of(const isa::ImageAccess& op, const ImageSlots& slots, const ImageLane& lane);
 
 // Holds the texel that integer coordinates name: x, y, z and layer, with the number of texels along each.
 // Byte accesses count x in bytes.

@@ -15,6 +15,7 @@ namespace glint::exec {
 
 enum class Filter : uint8_t { Nearest, Linear };
 enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge, ClampToBorder, MirrorClampToEdge };
+inline constexpr uint32_t kMaxAnisotropy = 16;  // the most samples of a footprint
 enum class Comparison : uint8_t {
   Never,
   Less,
@@ -26,7 +27,7 @@ enum class Comparison : uint8_t {
   Always
 };
 
-// Corresponds to Vulkan's VkSampler. Anisotropy is not modelled, so sampling is isotropic.
+// Corresponds to Vulkan's VkSampler.
 struct Sampler {
   Filter mag = Filter::Linear, min = Filter::Linear, mip = Filter::Nearest;
   std::array<Wrap, 3> wrap{Wrap::ClampToEdge, Wrap::ClampToEdge, Wrap::ClampToEdge};
@@ -34,6 +35,7 @@ struct Sampler {
   float lod_bias = 0.0f, min_lod = 0.0f, max_lod = 1000.0f;
   bool unnormalized = false;  // coordinates count texels, and only level 0 is read
   Comparison compare = Comparison::Never;
+  float max_anisotropy = 1.0f;  // from 1, which is isotropic, to kMaxAnisotropy
   std::string unbound{};  // Not empty: nobody bound the sampler, and this names the place.
 };
 

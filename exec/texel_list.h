@@ -6,11 +6,13 @@
 #include <span>
 
 #include "base/types.h"
+#include "exec/image_view.h"
 
 namespace glint::exec {
 
-// The most texels of one lane are those of a linear filter in three dimensions on two levels.
-inline constexpr uint32_t kMaxTexels = 16;
+// The most texels of one lane are those of an anisotropic filter: so many samples, each of four texels on two
+// levels. A linear filter in three dimensions has 16.
+inline constexpr uint32_t kMaxTexels = kMaxAnisotropy * 8;
 
 // Holds virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A
 // texel is aligned to its size, so it lies in one sector.

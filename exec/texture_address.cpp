@@ -99,18 +99,24 @@ CubeTexel across_edge(uint32_t face, int64_t x, int64_t y, int64_t size) {
   return {point.face, texel(point.s), texel(point.t)};
 }
 
-float level_of_detail(const ImageView& image, int count, const Gradient& dx, const Gradient& dy) {
+Footprint footprint_of(const ImageView& image, int count, const Gradient& dx, const Gradient& dy,
+                       float max_anisotropy) {
   double x = 0, y = 0;
   for (int axis = 0; axis < count; ++axis) {
     const double size = image.extent(axis, 0);
     x += size * dx[size_t(axis)] * size * dx[size_t(axis)];
     y += size * dy[size_t(axis)] * size * dy[size_t(axis)];
   }
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const double squared = std::max(x, y);
-  if (std::isinf(squared)) return std::numeric_limits<float>::infinity();
-  if (!(squared > 0.0))
-    return -std::numeric_limits<float>::infinity();  // There is no footprint, or it is not a number.
-  return float(0.5 * log2_of(squared));
+  if (std::isinf(squared)) return {kInfinity, 1, false};
+  if (!(squared > 0.0)) return {-kInfinity, 1, false};  // There is no footprint, or it is not a number.
+  if (!(max_anisotropy > 1.0f)) return {float(0.5 * log2_of(squared)), 1, false};
+  // These are squares, like the lengths of the sides.
+  const double shorter = std::max(std::min(x, y), std::numeric_limits<double>::min());
+  const double most = std::min(double(max_anisotropy) * max_anisotropy, std::max(squared, 1.0));
+  const double ratio = std::min(squared / shorter, most);
+  return {float(0.5 * log2_of(squared / ratio)), uint32_t(std::ceil(std::sqrt(ratio))), y > x};
 }
 
 Gradient cube_gradient(const std::array<float, 3>& direction, const Gradient& change) {

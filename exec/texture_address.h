@@ -32,10 +32,19 @@ struct CubeTexel {
 };
 CubeTexel across_edge(uint32_t face, int64_t x, int64_t y, int64_t size);
 
-// Returns log2 of the footprint of a pixel in texels (Vulkan, "Scale Factor Operation", without anisotropy),
-// from the `count` gradients of the coordinates in x and y.
 using Gradient = std::array<float, 3>;
-float level_of_detail(const ImageView& image, int count, const Gradient& dx, const Gradient& dy);
+// Says how a footprint is sampled: at this level of detail, with so many samples along its longer side.
+struct Footprint {
+  float lod;
+  uint32_t samples;
+  bool is_along_y;  // The longer side is dy, and not dx.
+};
+// Returns the footprint of a pixel (Vulkan, "Scale Factor Operation" and "Level-of-Detail Operation"), whose
+// sides are the `count` gradients of the coordinates in x and y. It takes at most `max_anisotropy` samples.
+// Choice: a footprint that is short in texels of level 0 takes no more samples than such texels, as Vulkan
+// allows.
+Footprint footprint_of(const ImageView& image, int count, const Gradient& dx, const Gradient& dy,
+                       float max_anisotropy);
 // Returns the gradients of (s, t) on the face that `direction` meets (Vulkan, "Cube Map Derivative
 // Transformation").
 Gradient cube_gradient(const std::array<float, 3>& direction, const Gradient& change);

@@ -42,26 +42,21 @@ bool holds(Comparison comparison, float reference, float texel) {
   return false;
 }
 
-// Holds the levels to read, and the weight of the second.
-struct Levels {
-  uint32_t first = 0, second = 0;
-  float weight = 0.0f;
-};
-Levels levels_of(const ImageView& image, const Sampler& sampler, float lod) {
-  if (image.levels == 1) return {};
-  const auto last = float(image.levels - 1);
+}  // namespace
+
+TexelReader::Levels TexelReader::levels_of(float lod) const {
+  if (image_.levels == 1 || sampler_.unnormalized) return {};
+  const auto last = float(image_.levels - 1);
   const float d = lod > 0.0f ? std::min(lod, last) : 0.0f;
   // By Vulkan's "Image Level(s) Selection", the nearest level is taken. Exactly between two levels, the finer
   // one is taken.
-  if (sampler.mip == Filter::Nearest) {
+  if (sampler_.mip == Filter::Nearest) {
     const auto level = uint32_t(std::max(std::ceil(d + 0.5f) - 1.0f, 0.0f));
     return {level, level, 0.0f};
   }
   const float first = std::floor(d);
   return {uint32_t(first), uint32_t(std::min(first + 1.0f, last)), d - first};
 }
-
-}  // namespace
 
 TexelReader::Place TexelReader::place_of(const SampleRequest& request) const {
   Place place{request.at, 0, isa::num_coordinates(request.shape), isa::is_cube(request.shape)};
@@ -175,23 +170,60 @@ Words TexelReader::filter(const SampleRequest& request, const Place& place, uint
   return texel[0];
 }
 
-Words TexelReader::sample(const SampleRequest& request) {
+// Choice: images with one or three axes are sampled isotropically, because Vulkan describes the anisotropic
+// filter for two axes only. So are those with unnormalised coordinates, whose samplers have no anisotropy.
+Footprint TexelReader::footprint_of(const SampleRequest& request) const {
+  if (!request.has_gradients) return {request.lod, 1, false};
+  const bool is_cube = isa::is_cube(request.shape);
+  const int axes = is_cube ? 2 : isa::num_coordinates(request.shape);
+  const bool is_flat = axes == 2 && !sampler_.unnormalized && !is_integer(info_of(image_.format));
+  const float most = is_flat ? sampler_.max_anisotropy : 1.0f;
+  if (!is_cube) return exec::footprint_of(image_, axes, request.dx, request.dy, most);
+  return exec::footprint_of(image_, axes, cube_gradient(request.at, request.dx),
+                            cube_gradient(request.at, request.dy), most);
+}
+
+Words TexelReader::filter_levels(const SampleRequest& request, const Levels& levels, Filter kind) {
   const Place place = place_of(request);
-  const float biased = request.lod + sampler_.lod_bias;
+  const Words first = filter(request, place, levels.first, kind);
+  return levels.weight == 0.0f ? first
+                               : mixed(first, filter(request, place, levels.second, kind), levels.weight);
+}
+
+// Returns the mean of samples along the longer side of a footprint (Vulkan, "Texel Anisotropic Filtering").
+// Choice: the sampler's filters hold for each sample. On a cube the direction moves, and not the place on its
+// face, so that samples past an edge lie on the neighbour.
+Words TexelReader::mean_along(const SampleRequest& request, const Footprint& footprint, const Levels& levels,
+                              Filter kind) {
+  const Gradient& side = footprint.is_along_y ? request.dy : request.dx;
+  std::array<double, 4> sum{};
+  for (uint32_t i = 1; i <= footprint.samples; ++i) {
+    const float share = float(i) / float(footprint.samples + 1) - 0.5f;
+    SampleRequest one = request;
+    for (size_t axis = 0; axis < 3; ++axis) one.at[axis] += share * side[axis];
+    const Words words = filter_levels(one, levels, kind);
+    for (size_t c = 0; c < 4; ++c) sum[c] += double(float_of(words[c]));
+  }
+  Words out;
+  for (size_t c = 0; c < 4; ++c) out[c] = std::bit_cast<uint32_t>(float(sum[c] / footprint.samples));
+  return out;
+}
+
+Words TexelReader::sample(const SampleRequest& request) {
+  const Footprint footprint = footprint_of(request);
+  const float biased = footprint.lod + sampler_.lod_bias;
   // By Vulkan's "LOD", a value that is not a number counts as the smallest value.
   const float lod = std::min(biased > sampler_.min_lod ? biased : sampler_.min_lod, sampler_.max_lod);
-  const Filter filter_kind = lod > 0.0f ? sampler_.min : sampler_.mag;
-  const Levels levels = sampler_.unnormalized ? Levels{} : levels_of(image_, sampler_, lod);
-  const bool mixes = levels.weight != 0.0f;
-  if (is_integer(info_of(image_.format)) && (filter_kind == Filter::Linear || mixes || request.compare)) {
+  const Filter kind = lod > 0.0f ? sampler_.min : sampler_.mag;
+  const Levels levels = levels_of(lod);
+  if (is_integer(info_of(image_.format)) &&
+      (kind == Filter::Linear || levels.weight != 0.0f || request.compare)) {
     error_ = "has integer texels, which can be neither filtered nor compared";
     return {};
   }
-  const Words first = filter(request, place, levels.first, filter_kind);
   // Filters work on each component alone, so the components may be chosen after them.
-  return swizzled(
-      image_,
-      mixes ? mixed(first, filter(request, place, levels.second, filter_kind), levels.weight) : first);
+  return swizzled(image_, footprint.samples > 1 ? mean_along(request, footprint, levels, kind)
+                                                : filter_levels(request, levels, kind));
 }
 
 Words TexelReader::gather(const SampleRequest& request, size_t component) {

@@ -75,7 +75,7 @@ bool TextureOps::read(WarpContext& warp, const isa::Inst& inst, const isa::OpRow
       else if (!pass(lane, [&] { return "reads texel " + describe(place, *image); }))
         return false;
     } else {
-      const SampleRequest request = request_of(op, slots, operands, *image);
+      const SampleRequest request = request_of(op, slots, operands);
       out =
           op.request == ImageRequest::Gather ? reader.gather(request, op.component) : reader.sample(request);
     }

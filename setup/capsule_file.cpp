@@ -69,10 +69,9 @@ float float_of(const Json& json) {
 }
 
 Json json_of(const exec::Sampler& s) {
-  return {int(s.mag),         int(s.min),         int(s.mip),     int(s.wrap[0]),
-          int(s.wrap[1]),     int(s.wrap[2]),     s.border,       bits_of(s.lod_bias),
-          bits_of(s.min_lod), bits_of(s.max_lod), s.unnormalized, int(s.compare),
-          s.unbound};
+  return {int(s.mag),     int(s.min),     int(s.mip),          int(s.wrap[0]),           int(s.wrap[1]),
+          int(s.wrap[2]), s.border,       bits_of(s.lod_bias), bits_of(s.min_lod),       bits_of(s.max_lod),
+          s.unnormalized, int(s.compare), s.unbound,           bits_of(s.max_anisotropy)};
 }
 exec::Sampler sampler_of(const Json& json) {
   exec::Sampler s;
@@ -83,6 +82,7 @@ exec::Sampler sampler_of(const Json& json) {
   s.min_lod = float_of(json.at(8)), s.max_lod = float_of(json.at(9));
   s.unnormalized = json.at(10), s.compare = exec::Comparison(json.at(11).get<int>());
   s.unbound = json.at(12);
+  if (json.size() > 13) s.max_anisotropy = float_of(json.at(13));  // Older capsules have isotropic samplers.
   return s;
 }
 

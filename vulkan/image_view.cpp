@@ -132,6 +132,8 @@ VkResult CreateSampler(Device& device, const VkSamplerCreateInfo* info, VkSample
   s.lod_bias = info->mipLodBias, s.min_lod = info->minLod, s.max_lod = info->maxLod;
   s.unnormalized = info->unnormalizedCoordinates;
   static_assert(int(exec::Comparison::Always) == VK_COMPARE_OP_ALWAYS);
+  if (info->anisotropyEnable)
+    s.max_anisotropy = std::clamp(info->maxAnisotropy, 1.0f, float(exec::kMaxAnisotropy));
   if (info->compareEnable) s.compare = exec::Comparison(info->compareOp);
   *out = new VkSampler_T{s};
   device.bindable.insert(*out);

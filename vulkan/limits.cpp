@@ -29,7 +29,7 @@ void set_image_limits(VkPhysicalDeviceLimits& l) {
   l.maxImageArrayLayers = 2048;
   l.maxTexelBufferElements = 1u << 27;
   l.maxSamplerAllocationCount = 4000;
-  l.maxSamplerLodBias = 16.0f, l.maxSamplerAnisotropy = 1.0f;
+  l.maxSamplerLodBias = 16.0f, l.maxSamplerAnisotropy = float(exec::kMaxAnisotropy);
   l.subPixelPrecisionBits = l.subTexelPrecisionBits = l.mipmapPrecisionBits = 8;
   l.minTexelOffset = l.minTexelGatherOffset = -32;
   l.maxTexelOffset = l.maxTexelGatherOffset = 31;
@@ -92,7 +92,6 @@ void set_universal_limits(VkPhysicalDeviceLimits& l) {
   l.maxFragmentCombinedOutputResources = 32;
   l.maxVertexOutputComponents = l.maxFragmentInputComponents = 128;
   l.maxDrawIndexedIndexValue = 0xffff'ffff, l.maxDrawIndirectCount = 1 << 16;
-  l.maxSamplerAnisotropy = 16.0f;  // Choice: sampling stays isotropic, as Vulkan allows.
   l.lineWidthRange[1] = 8.0f, l.lineWidthGranularity = 1.0f;
   l.maxGeometryShaderInvocations = 32, l.maxGeometryOutputVertices = 256;
   l.maxGeometryInputComponents = l.maxGeometryOutputComponents = 64;

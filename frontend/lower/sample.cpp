@@ -77,8 +77,8 @@ std::optional<Sample> sample_of(ModuleLowering& l, const Instruction& inst, size
 }
 
 // Lowers a sample. An implicit level comes from the gradients between lanes where the module groups threads
-// into quads, and a bias scales the gradients. Otherwise the level is 0, as in GLSL outside of fragment
-// shaders.
+// into quads, and a bias scales the gradients. Choice: so it scales the distance of anisotropic samples, too.
+// Otherwise the level is 0, as in GLSL outside of fragment shaders.
 void sample(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const bool compares = has_reference(inst.op);
   const auto s = sample_of(l, inst, compares ? 3 : 2);

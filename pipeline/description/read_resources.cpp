@@ -53,6 +53,11 @@ exec::Sampler read_sampler_keys(Reading& r, TableReader& t) {
   out.min_lod = float(t.number("min_lod", 0));
   out.max_lod = float(t.number("max_lod", 1000));
   out.unnormalized = t.flag("unnormalized", false);
+  out.max_anisotropy = float(t.number("max_anisotropy", 1));
+  if (!(out.max_anisotropy >= 1 && out.max_anisotropy <= float(exec::kMaxAnisotropy)))
+    r.errors.error(t.take("max_anisotropy")->where,
+                   fmt::format("'max_anisotropy' is {}, expected a number from 1 to {}", out.max_anisotropy,
+                               exec::kMaxAnisotropy));
   const std::vector<std::string> compares{
       "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
   out.compare = exec::Comparison(

@@ -176,6 +176,38 @@ class Texels(GlintTest):
         self.assertEqual((self.folder / "new.toml").read_text().count('filter = "nearest"'), 2)
         self.expect(0, [], "run", "new.toml", "--mode", "functional", "--out", "new")
 
+    def test_a_sampler_is_anisotropic_where_its_file_says_so(self):
+        self.write("stretch.comp", """#version 460
+layout(local_size_x = 1) in;
+layout(set = 0, binding = 0) uniform sampler2D picture;
+layout(set = 0, binding = 1) buffer Out { float o[]; };
+void main() { o[0] = textureGrad(picture, vec2(8.5 / 16.0, 0.5), vec2(0.5, 0), vec2(0, 2 / 16.0)).r; }
+""")
+        row = [0] * 8 + [1] * 8
+        text = f"""[compute]
+shader = "stretch.comp"
+[launch]
+groups = 1
+[[image]]
+binding = 0
+size = [16, 16]
+format = "r32_float"
+data = {row * 16}
+filter = "nearest"
+max_anisotropy = 16
+[[buffer]]
+binding = 1
+type = "f32"
+bytes = 4
+save = "out.csv"
+"""
+        # Two of the four samples lie to the left of texel 8.
+        self.run_text(0, [], text)
+        self.assertEqual(self.saved_numbers(), [0.5])
+        self.run_text(0, [], text.replace("max_anisotropy = 16\n", ""))
+        self.assertEqual(self.saved_numbers(), [1])
+        self.run_text(2, ["p.toml:11:1: error: 'max_anisotropy' is 17, expected a number from 1 to 16"], text.replace("anisotropy = 16", "anisotropy = 17"))
+
     def test_images_of_integers_are_saved_as_integers_with_all_their_bits(self):
         self.write("integers.comp", INTEGERS)
         text = INTEGERS_FILE.replace("[1, 2, 3, 4, 5, 6, 7, 8]", '[4294967295, 16777217, 3, 4, 5, 6, 7, 8]\nsave = ["u.csv", "u.npy"]').replace(

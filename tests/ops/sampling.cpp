@@ -92,7 +92,7 @@ int64_t Sampling::decided(double x, bool is_exact) {
 
 // Coordinates have few bits, which a product with a power of two keeps exact.
 bool Sampling::is_exact_on(int64_t size) const {
-  return !geometry_.is_cube && (sampler_.unnormalized || std::has_single_bit(uint64_t(size)));
+  return !is_moved_ && !geometry_.is_cube && (sampler_.unnormalized || std::has_single_bit(uint64_t(size)));
 }
 
 Sampling::Place Sampling::place_of(const Request& request) {
@@ -111,11 +111,14 @@ Sampling::Place Sampling::place_of(const Request& request) {
   return out;
 }
 
-// Returns the level of detail before limits: log2 of the larger footprint of the two directions, in texels.
-double Sampling::lod_of(const Request& request) {
-  if (!request.has_gradients) return request.level;
-  double largest = 0;
-  for (const Vector& change : {request.dx, request.dy}) {
+// Returns the level of detail before limits, and the samples: log2 of a footprint's longer side in texels,
+// divided by the number of samples that it holds beside each other.
+Sampling::Footprint Sampling::footprint_of(const Request& request) {
+  if (!request.has_gradients) return {request.level, 1, {}};
+  double lengths[2];
+  const Vector* const changes[] = {&request.dx, &request.dy};
+  for (size_t k = 0; k < 2; ++k) {
+    const Vector& change = *changes[k];
     Vector d = change;
     if (geometry_.is_cube) {
       const Axes& axes = kFaces[face_of(request.at)];
@@ -127,9 +130,18 @@ double Sampling::lod_of(const Request& request) {
     double sum = 0;
     for (int axis = 0; axis < geometry_.axes; ++axis)
       sum += std::pow(double(image_.extent(axis, 0)) * d[size_t(axis)], 2);
-    largest = std::max(largest, sum);
+    lengths[k] = std::sqrt(sum);
   }
-  return largest > 0 ? std::log2(largest) / 2 : -std::numeric_limits<double>::infinity();
+  const double longer = std::max(lengths[0], lengths[1]), shorter = std::min(lengths[0], lengths[1]);
+  if (longer == 0) return {-std::numeric_limits<double>::infinity(), 1, {}};
+  Footprint out{std::log2(longer), 1, *changes[lengths[1] > lengths[0]]};
+  const double most = double(sampler_.max_anisotropy);
+  if (most == 1 || geometry_.axes != 2 || sampler_.unnormalized || image_.format.is_integer()) return out;
+  const double ratio = std::min({shorter == 0 ? most : longer / shorter, most, std::max(longer, 1.0)});
+  const bool is_same = lengths[0] == lengths[1] && !geometry_.is_cube;
+  if (ratio != most && !is_same && std::fabs(ratio - std::round(ratio)) < 1e-4) is_sharp_ = false;
+  out.lod = std::log2(longer / ratio), out.samples = int64_t(std::ceil(ratio));
+  return out;
 }
 
 Colour Sampling::compared(const Request& request, const Colour& colour) const {
@@ -230,18 +242,9 @@ Colour Sampling::filtered(const Request& request, const Place& place, int64_t le
   return out;
 }
 
-Colour Sampling::sample(const Request& request) {
+Colour Sampling::on_levels(const Request& request, double lod, bool linear) {
   const Place place = place_of(request);
-  const double limited =
-      std::min(std::max(lod_of(request) + double(sampler_.lod_bias), double(sampler_.min_lod)),
-               double(sampler_.max_lod));
-  // Without gradients the level is exact. With gradients it may fall on either side of a decision.
-  if (request.has_gradients && std::fabs(2 * limited - std::round(2 * limited)) < 1e-4 &&
-      limited != double(sampler_.min_lod) && limited != double(sampler_.max_lod))
-    is_sharp_ = false;
-  const bool linear = (limited > 0 ? sampler_.min : sampler_.mag) == Filter::Linear;
   if (sampler_.unnormalized) return filtered(request, place, 0, linear);
-  const double lod = std::clamp(limited, 0.0, double(image_.view.levels - 1));
   if (sampler_.mip == Filter::Nearest)  // Of two equally near levels, it is the finer one.
     return filtered(request, place, std::max<int64_t>(int64_t(std::ceil(lod - 0.5)), 0), linear);
   const auto low = int64_t(lod), high = std::min<int64_t>(low + 1, image_.view.levels - 1);
@@ -251,6 +254,30 @@ Colour Sampling::sample(const Request& request) {
   const Colour other = filtered(request, place, high, linear);
   for (size_t i = 0; i < 4; ++i) out[i] = out[i] * (1 - share) + other[i] * share;
   return out;
+}
+
+Colour Sampling::sample(const Request& request) {
+  const Footprint footprint = footprint_of(request);
+  const double limited =
+      std::min(std::max(footprint.lod + double(sampler_.lod_bias), double(sampler_.min_lod)),
+               double(sampler_.max_lod));
+  // Without gradients the level is exact. With gradients it may fall on either side of a decision.
+  if (request.has_gradients && std::fabs(2 * limited - std::round(2 * limited)) < 1e-4 &&
+      limited != double(sampler_.min_lod) && limited != double(sampler_.max_lod))
+    is_sharp_ = false;
+  const bool linear = (limited > 0 ? sampler_.min : sampler_.mag) == Filter::Linear;
+  const double lod = std::clamp(limited, 0.0, double(image_.view.levels - 1));
+  if (footprint.samples == 1) return on_levels(request, lod, linear);
+  is_moved_ = true;
+  Colour mean{};
+  for (int64_t i = 1; i <= footprint.samples; ++i) {
+    Request moved = request;
+    const double along = double(2 * i - footprint.samples - 1) / double(2 * (footprint.samples + 1));
+    for (size_t axis = 0; axis < 3; ++axis) moved.at[axis] += along * footprint.side[axis];
+    const Colour colour = on_levels(moved, lod, linear);
+    for (size_t c = 0; c < 4; ++c) mean[c] += colour[c] / double(footprint.samples);
+  }
+  return mean;
 }
 
 Colour Sampling::gather(const Request& request, size_t component) {

@@ -40,7 +40,15 @@ class Sampling {
   };
   using Index = std::array<int64_t, 3>;
   Place place_of(const Request& request);
-  double lod_of(const Request& request);
+  // Holds how the footprint of gradients is sampled: so many samples along `side`, a change of the
+  // coordinates.
+  struct Footprint {
+    double lod = 0;
+    int64_t samples = 1;
+    std::array<double, 3> side{};
+  };
+  Footprint footprint_of(const Request& request);
+  Colour on_levels(const Request& request, double lod, bool linear);
   Colour filtered(const Request& request, const Place& place, int64_t level, bool linear);
   Colour texel(const Request& request, const Place& place, int64_t level, Index index);
   Colour corner(const Request& request, const Place& place, int64_t level, Index index);
@@ -56,6 +64,7 @@ class Sampling {
   const Geometry geometry_;
   const Bytes& bytes_;
   bool is_sharp_ = true;
+  bool is_moved_ = false;  // The coordinates are those of one sample of several, and have all bits.
 };
 
 }  // namespace glint::test

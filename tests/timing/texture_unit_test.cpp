@@ -128,6 +128,33 @@ TEST_CASE("a fetch is a sample a lane, and one between two levels is two") {
   CHECK(cycles("tex.level.2d.v4.f32.f32", 4, 0xff) == plain + 16 / 4 - 1);
 }
 
+TEST_CASE("each sample of an anisotropic filter takes the texture units as a sample of its own does") {
+  const auto cycles = [](float anisotropy) {
+    Code code;
+    const isa::Slot half = code.constant(exec::bits(0.5f)), quarter = code.constant(exec::bits(0.25f)),
+                    zero = code.constant(0);
+    code.add("tex.grad.2d.v4.f32.f32",
+             {reg(1), reg(2), reg(3), reg(4), zero, half, half, half, zero, zero, quarter});
+    code.add("add.u32", {reg(7), reg(4), reg(4)});
+    code.add("exit");
+    Params params = quick_params();
+    params.texture.samples_per_cycle = 4;
+    OneCore core(code, params, {});
+    exec::ImageView texture;
+    texture.format = exec::TexelFormat::R32Float;
+    texture.width = texture.height = 8;
+    texture.sampler.max_anisotropy = anisotropy;
+    texture.base = core.memory.allocate("image", texture.bytes());
+    core.world.images = {texture};
+    const Cycle end = core.run();
+    REQUIRE_FALSE(core.cell->fault());
+    return end;
+  };
+
+  // The footprint has 4 by 2 texels, so there are two samples of four texels for each lane.
+  CHECK(cycles(16) == cycles(1) + 32 / 4);
+}
+
 TEST_CASE("a full queue of textures holds back textures only") {
   Code code;
   for (int i = 0; i < 6; ++i)

@@ -72,6 +72,16 @@ class Capsule(VulkanTest):
         self.assertIn("bvh.format", subprocess.run([GLINT, "compare", "bvh2", "bvh8"], cwd=self.folder, capture_output=True,
                                                    text=True, timeout=100).stdout)
 
+    def test_a_capsule_keeps_anisotropic_samplers(self):
+        for test, numbers in (("an anisotropic sampler takes the mean along the longer gradient", (0.5, 1, 1)),):
+            with self.subTest(test):
+                capsules, _ = self.save(test, "dispatch 0")
+                self.replay(capsules[0], "--out", "again")
+                data = (self.folder / "again/set0-binding0.bin").read_bytes()
+                self.assertEqual([round(x, 4) for x in struct.unpack(f"<{len(numbers)}f", data[:4 * len(numbers)])], list(numbers))
+                (self.folder / "app").rename(self.folder / f"app{len(numbers)}")
+                (self.folder / "again").rename(self.folder / f"again{len(numbers)}")
+
     def test_a_replay_leaves_the_buffers_that_it_changed(self):
         capsules, _ = self.save("[three_launches]", "dispatch 0-1")
         words = []

@@ -133,6 +133,26 @@ MappedBuffer Client::buffer(VkDeviceSize bytes, VkBufferUsageFlags usage) {
   return out;
 }
 
+VkImage Client::bound_image(const VkImageCreateInfo& info) {
+  VkImage out = nullptr;
+  check(vkCreateImage(device, &info, nullptr, &out), "vkCreateImage");
+  ends_.emplace_back([this, out] { vkDestroyImage(device, out, nullptr); });
+  VkMemoryRequirements needs;
+  vkGetImageMemoryRequirements(device, out, &needs);
+  check(vkBindImageMemory(device, out, allocate(needs), 0), "vkBindImageMemory");
+  check(run([&](VkCommandBuffer commands) {
+          VkImageMemoryBarrier barrier{};
+          barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, barrier.image = out;
+          barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL,
+          barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, info.mipLevels, 0, info.arrayLayers};
+          barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+          vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                               VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+        }),
+        "the change of layout");
+  return out;
+}
+
 BoundImage Client::image(VkFormat format, VkExtent3D extent, uint32_t levels, uint32_t layers,
                          VkComponentMapping swizzle, VkSampleCountFlagBits samples) {
   BoundImage out;
@@ -148,11 +168,7 @@ BoundImage Client::image(VkFormat format, VkExtent3D extent, uint32_t levels, ui
   vkGetPhysicalDeviceFormatProperties(physical, format, &can);
   if (can.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)
     info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-  check(vkCreateImage(device, &info, nullptr, &out.image), "vkCreateImage");
-  ends_.emplace_back([this, made = out.image] { vkDestroyImage(device, made, nullptr); });
-  VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device, out.image, &needs);
-  check(vkBindImageMemory(device, out.image, allocate(needs), 0), "vkBindImageMemory");
+  out.image = bound_image(info);
   VkImageViewCreateInfo view{};
   view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, view.image = out.image, view.format = format;
   view.viewType = has_depth    ? VK_IMAGE_VIEW_TYPE_3D
@@ -161,24 +177,16 @@ BoundImage Client::image(VkFormat format, VkExtent3D extent, uint32_t levels, ui
   view.components = swizzle, view.subresourceRange = out.all;
   check(vkCreateImageView(device, &view, nullptr, &out.view), "vkCreateImageView");
   ends_.emplace_back([this, made = out.view] { vkDestroyImageView(device, made, nullptr); });
-  check(run([&](VkCommandBuffer commands) {
-          VkImageMemoryBarrier barrier{};
-          barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, barrier.image = out.image;
-          barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL, barrier.subresourceRange = out.all;
-          barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-          vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                               VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
-        }),
-        "the change of layout");
   return out;
 }
 
-VkSampler Client::sampler(VkFilter filter, VkSamplerAddressMode mode) {
+VkSampler Client::sampler(VkFilter filter, VkSamplerAddressMode mode, float anisotropy) {
   VkSamplerCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = info.minFilter = filter;
   info.addressModeU = info.addressModeV = info.addressModeW = mode;
   info.maxLod = VK_LOD_CLAMP_NONE;
+  info.anisotropyEnable = anisotropy > 1, info.maxAnisotropy = anisotropy;
   VkSampler out = nullptr;
   check(vkCreateSampler(device, &info, nullptr, &out), "vkCreateSampler");
   ends_.emplace_back([this, out] { vkDestroySampler(device, out, nullptr); });
@@ -304,6 +312,29 @@ VkDescriptorSet Client::set(VkDescriptorSetLayout layout, const std::vector<VkDe
     write.descriptorCount = 1, write.descriptorType = type, write.pBufferInfo = &buffers[i];
     vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
   }
+  return out;
+}
+
+VkDescriptorSet Client::set_with_image(VkDescriptorSetLayout layout, const MappedBuffer& buffer,
+                                       VkDescriptorType type, const VkDescriptorImageInfo& image) {
+  constexpr VkDescriptorType kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  const VkDescriptorPoolSize sizes[] = {{kBuffer, 1}, {type, 1}};
+  VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 2, sizes};
+  VkDescriptorPool made = nullptr;
+  check(vkCreateDescriptorPool(device, &info, nullptr, &made), "vkCreateDescriptorPool");
+  ends_.emplace_back([this, made] { vkDestroyDescriptorPool(device, made, nullptr); });
+  VkDescriptorSetAllocateInfo wanted{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, made, 1,
+                                     &layout};
+  VkDescriptorSet out = nullptr;
+  check(vkAllocateDescriptorSets(device, &wanted, &out), "vkAllocateDescriptorSets");
+  const VkDescriptorBufferInfo all{buffer.buffer, 0, VK_WHOLE_SIZE};
+  VkWriteDescriptorSet writes[2]{};
+  for (uint32_t i = 0; i < 2; ++i) {
+    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, writes[i].dstSet = out;
+    writes[i].dstBinding = i, writes[i].descriptorCount = 1, writes[i].descriptorType = i ? type : kBuffer;
+    writes[i].pBufferInfo = &all, writes[i].pImageInfo = &image;
+  }
+  vkUpdateDescriptorSets(device, 2, writes, 0, nullptr);
   return out;
 }
 

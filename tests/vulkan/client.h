@@ -68,7 +68,10 @@ class Client {
   // Makes an image with one view, and gives it the layout "general". Images with depth 1 have two axes.
   BoundImage image(VkFormat format, VkExtent3D extent, uint32_t levels = 1, uint32_t layers = 1,
                    VkComponentMapping swizzle = {}, VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
-  VkSampler sampler(VkFilter filter, VkSamplerAddressMode mode);
+  // Makes an image, binds it to memory, and gives it the layout "general".
+  VkImage bound_image(const VkImageCreateInfo& info);
+  // `anisotropy` 1 makes a sampler without it.
+  VkSampler sampler(VkFilter filter, VkSamplerAddressMode mode, float anisotropy = 1);
   // Fills level 0 of an image from a buffer, or a buffer from it.
   VkResult upload(const MappedBuffer& from, const BoundImage& to, VkExtent3D extent);
   VkResult download(const BoundImage& from, const MappedBuffer& to, VkExtent3D extent);
@@ -81,6 +84,9 @@ class Client {
   // Returns a set in which binding i has buffer i.
   VkDescriptorSet set(VkDescriptorSetLayout layout, const std::vector<VkDescriptorBufferInfo>& buffers,
                       VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  // Returns a set with a storage buffer at binding 0 and an image at binding 1.
+  VkDescriptorSet set_with_image(VkDescriptorSetLayout layout, const MappedBuffer& buffer,
+                                 VkDescriptorType type, const VkDescriptorImageInfo& image);
   void at_end(std::function<void()> end) { ends_.push_back(std::move(end)); }
   VkFence fence();
   VkSemaphore timeline(uint64_t value);

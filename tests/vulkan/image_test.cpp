@@ -17,29 +17,6 @@ constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kStorageImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
-// Returns a set with a buffer at binding 0 and an image at binding 1.
-VkDescriptorSet set_with_image(Client& client, const ComputePipeline& pipeline, const MappedBuffer& buffer,
-                               VkDescriptorType type, const VkDescriptorImageInfo& image) {
-  const VkDescriptorPoolSize sizes[] = {{kStorage, 1}, {type, 1}};
-  VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 2, sizes};
-  VkDescriptorPool pool = nullptr;
-  check(vkCreateDescriptorPool(client.device, &info, nullptr, &pool), "vkCreateDescriptorPool");
-  client.at_end([&client, pool] { vkDestroyDescriptorPool(client.device, pool, nullptr); });
-  VkDescriptorSetAllocateInfo wanted{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1,
-                                     &pipeline.set_layout};
-  VkDescriptorSet set = nullptr;
-  check(vkAllocateDescriptorSets(client.device, &wanted, &set), "vkAllocateDescriptorSets");
-  const VkDescriptorBufferInfo all{buffer.buffer, 0, VK_WHOLE_SIZE};
-  VkWriteDescriptorSet writes[2]{};
-  for (uint32_t i = 0; i < 2; ++i) {
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, writes[i].dstSet = set;
-    writes[i].dstBinding = i, writes[i].descriptorCount = 1, writes[i].descriptorType = i ? type : kStorage;
-    writes[i].pBufferInfo = &all, writes[i].pImageInfo = &image;
-  }
-  vkUpdateDescriptorSets(client.device, 2, writes, 0, nullptr);
-  return set;
-}
-
 // Returns what a copy brings of an image to which a shader has stored x, y and 255 - x as red, green and
 // blue. `layout` is the image's declaration in the shader.
 std::vector<uint32_t> stored_picture(VkFormat format, const std::string& layout, VkExtent3D extent) {
@@ -53,8 +30,8 @@ std::vector<uint32_t> stored_picture(VkFormat format, const std::string& layout,
                           "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
                           "  imageStore(picture, p, vec4(p.x, p.y, 255 - p.x, 255) / 255.0); }\n",
                       {{kStorage, kStorageImage}});
-  const VkDescriptorSet set =
-      set_with_image(client, pipeline, out, kStorageImage, {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
+  const VkDescriptorSet set = client.set_with_image(pipeline.set_layout, out, kStorageImage,
+                                                    {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
 
   REQUIRE(client.dispatch(pipeline, set, {extent.width / 8, extent.height / 8, 1}) == VK_SUCCESS);
   REQUIRE(client.download(image, out, extent) == VK_SUCCESS);
@@ -93,8 +70,8 @@ TEST_CASE("a linear sampler blends texels, and the view's swizzle orders their c
       "void main() { v = textureLod(picture, vec2(0.5, 0.5), 0); }\n",
       {{kStorage, kTexture}});
   const VkSampler linear = client.sampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
-  const VkDescriptorSet set =
-      set_with_image(client, pipeline, out, kTexture, {linear, image.view, VK_IMAGE_LAYOUT_GENERAL});
+  const VkDescriptorSet set = client.set_with_image(pipeline.set_layout, out, kTexture,
+                                                    {linear, image.view, VK_IMAGE_LAYOUT_GENERAL});
 
   REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
 
@@ -184,10 +161,10 @@ void check_samples(VkSampleCountFlagBits count) {
                           "* textureSamples(picture); }\n",
                       {{kStorage, kTexture}});
   const VkSampler sampler = client.sampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
-  const VkDescriptorSet to_store =
-      set_with_image(client, store, fetched, kStorageImage, {nullptr, samples.view, VK_IMAGE_LAYOUT_GENERAL});
-  const VkDescriptorSet to_fetch =
-      set_with_image(client, fetch, fetched, kTexture, {sampler, copied.view, VK_IMAGE_LAYOUT_GENERAL});
+  const VkDescriptorSet to_store = client.set_with_image(store.set_layout, fetched, kStorageImage,
+                                                         {nullptr, samples.view, VK_IMAGE_LAYOUT_GENERAL});
+  const VkDescriptorSet to_fetch = client.set_with_image(fetch.set_layout, fetched, kTexture,
+                                                         {sampler, copied.view, VK_IMAGE_LAYOUT_GENERAL});
 
   REQUIRE(client.dispatch(store, to_store, {1, 1, 1}) == VK_SUCCESS);
   REQUIRE(client.run([&](VkCommandBuffer commands) {
@@ -256,8 +233,8 @@ TEST_CASE("a sample that an image lacks is dropped and does not meet the next la
       "  imageStore(picture, ivec3(1, 0, 1), 3, uvec4(8));\n"
       "  o[0] = imageLoad(picture, ivec3(0, 0, 1), 0).x; o[1] = imageLoad(picture, ivec3(1, 0, 1), 3).x; }\n",
       {{kStorage, kStorageImage}});
-  const VkDescriptorSet set =
-      set_with_image(client, pipeline, out, kStorageImage, {nullptr, layers.view, VK_IMAGE_LAYOUT_GENERAL});
+  const VkDescriptorSet set = client.set_with_image(pipeline.set_layout, out, kStorageImage,
+                                                    {nullptr, layers.view, VK_IMAGE_LAYOUT_GENERAL});
 
   REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
 
