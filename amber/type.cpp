@@ -21,7 +21,7 @@ const std::map<std::string, Scalar>& scalar_names() {
 }
 
 std::optional<exec::TexelFormat> texel_format(const std::string& glint_name) {
-  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i)
+  for (size_t i = 0; i < size_t(exec::kFirstBlockFormat); ++i)
     if (exec::info_of(exec::TexelFormat(i)).name == glint_name) return exec::TexelFormat(i);
   return std::nullopt;
 }
@@ -53,6 +53,7 @@ std::optional<Type> format_named(const std::string& name) {
   if (std::regex_match(name, m, std::regex("A8B8G8R8_(UNORM|SNORM|UINT|SINT|SRGB)_PACK32")))
     return format_named("R8G8B8A8_" + m[1].str());
   type.format = exec::format_of_vulkan(name);
+  if (type.format && exec::info_of(*type.format).block > 1) return std::nullopt;
   if (type.format && exec::info_of(*type.format).bits == 0) {
     const uint32_t bytes = exec::info_of(*type.format).bytes;
     type.scalar = bytes == 1 ? Scalar::U8 : bytes == 2 ? Scalar::U16 : Scalar::U32;

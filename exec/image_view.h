@@ -36,7 +36,7 @@ struct Sampler {
   bool unnormalized = false;  // coordinates count texels, and only level 0 is read
   Comparison compare = Comparison::Never;
   float max_anisotropy = 1.0f;  // from 1, which is isotropic, to kMaxAnisotropy
-  std::string unbound{};  // Not empty: nobody bound the sampler, and this names the place.
+  std::string unbound{};        // Not empty: nobody bound the sampler, and this names the place.
 };
 
 struct TexelIndex {
@@ -54,7 +54,8 @@ struct ImageRange {
 };
 
 // Describes an image or a part of one. Model: texels lie in linear rows: x, then y, then z, then layer, then
-// level, with nothing between them. Hardware swizzles. A cube has six layers: +x -x +y -y +z -z.
+// level, with nothing between them. Hardware swizzles. A cube has six layers: +x -x +y -y +z -z. Where a
+// format has blocks, they lie so in place of texels.
 struct ImageView {
   using Format = TexelFormat;
   Format format = Format::Rgba32Float;
@@ -71,26 +72,37 @@ struct ImageView {
   uint32_t first_layer = 0, stored_layers = 0;
   Swizzle swizzle = kAsStored;  // of textures
 
+  // Returns the bytes of a texel, or of a block of texels.
   uint32_t texel_bytes() const { return info_of(format).bytes; }
   // Returns the texels along an axis of a level: half of the level above, and at least 1.
   uint32_t extent(int axis, uint32_t level) const {
     const uint32_t full = axis == 0 ? width : axis == 1 ? height : depth;
     return level < 32 && full >> level > 1 ? full >> level : 1;
   }
+  // Returns the texels or blocks along an axis of a level. Blocks at its end may be in the level in part.
+  uint32_t blocks(int axis, uint32_t level) const {
+    return blocks_of(extent(axis, level), axis < 2 ? info_of(format).block : 1);
+  }
   uint32_t layers_in_memory() const { return stored_layers ? stored_layers : layers; }
   // Returns the bytes of all layers in memory of the levels before `level`. With `levels`, these are the
   // bytes of the image.
   uint64_t bytes_before_level(uint32_t level) const {
-    uint64_t texels = 0;
+    const FormatInfo& info = info_of(format);
+    uint64_t blocks_before = 0;
     for (uint32_t l = 0; l < level; ++l)
-      texels += uint64_t{extent(0, l)} * extent(1, l) * extent(2, l) * layers_in_memory();
-    return texels * texel_bytes();
+      blocks_before += uint64_t{blocks_of(extent(0, l), info.block)} * blocks_of(extent(1, l), info.block) *
+                       extent(2, l) * layers_in_memory();
+    return blocks_before * info.bytes;
   }
   uint64_t bytes() const { return bytes_before_level(levels); }
+  // Returns where a texel lies, or the block that holds it.
   Address address_of(const TexelIndex& at) const {
+    const FormatInfo& info = info_of(format);
     const uint64_t layer = uint64_t{first_layer} + at.layer;
-    const uint64_t row = (layer * extent(2, at.level) + at.z) * extent(1, at.level) + at.y;
-    return base + bytes_before_level(at.level) + (row * extent(0, at.level) + at.x) * texel_bytes();
+    const uint64_t slice = layer * extent(2, at.level) + at.z;
+    const uint64_t row = slice * blocks_of(extent(1, at.level), info.block) + at.y / info.block;
+    const uint64_t block = row * blocks_of(extent(0, at.level), info.block) + at.x / info.block;
+    return base + bytes_before_level(at.level) + block * info.bytes;
   }
 };
 

@@ -54,6 +54,11 @@ std::byte* SurfaceOps::find_texel(WarpContext& warp, const isa::Inst& inst, cons
   const auto refuse = [&](const auto& what) -> std::byte* {
     return faults_.let_pass(warp, lane, FaultKind::Image, what), nullptr;
   };
+  if (info_of(image->format).block > 1) [[unlikely]]
+    return refuse([&] {
+      return fmt::format("uses image '{}' as a storage image, and its format {} can only be sampled",
+                         image->name, info_of(image->format).name);
+    });
   if (!whole && place.at[0] % bytes != 0)
     return refuse([&] {
       return fmt::format("accesses {} bytes at byte {} of a row of image '{}'", bytes, place.at[0],

@@ -15,7 +15,8 @@ namespace glint::exec {
 inline constexpr uint32_t kMaxTexels = kMaxAnisotropy * 8;
 
 // Holds virtual addresses, row by row: the first texel of each lane, then the second of each that has one. A
-// texel is aligned to its size, so it lies in one sector.
+// texel is aligned to its size, so it lies in one sector, and so is a block. Model: of a format with blocks,
+// each texel reads its block as it lies in memory, and decoding takes no time.
 class TexelList {
  public:
   static constexpr Address kNone = 0;  // No allocation holds address 0.

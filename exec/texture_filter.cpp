@@ -108,7 +108,7 @@ Words TexelReader::stored(const TexelIndex& at) {
     return {};
   }
   texels_[num_texels_++] = address;
-  return decode(image_.format, from);
+  return decode_at(image_.format, from, at.x, at.y);
 }
 
 Words TexelReader::read(const SampleRequest& request, const Place& place, uint32_t level,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "exec/block_formats.h"
 
 namespace glint::exec {
 namespace {
@@ -76,6 +77,22 @@ constexpr FormatInfo kFormats[] = {
     {"a1r5g5b5_unorm_pack16", 2, 4, 0, Unorm, 0, kRgba},
     {"bgr10a2_unorm", 4, 4, 0, Unorm, 0, kBgra},
     {"bgr10a2_uint", 4, 4, 0, Uint, 0, kBgra},
+    {"bc1_rgb_unorm_block", 8, 3, 0, Unorm, 0, kRgb, 4},
+    {"bc1_rgb_srgb_block", 8, 3, 0, Srgb, 0, kRgb, 4},
+    {"bc1_rgba_unorm_block", 8, 4, 0, Unorm, 0, kRgba, 4},
+    {"bc1_rgba_srgb_block", 8, 4, 0, Srgb, 0, kRgba, 4},
+    {"bc2_unorm_block", 16, 4, 0, Unorm, 0, kRgba, 4},
+    {"bc2_srgb_block", 16, 4, 0, Srgb, 0, kRgba, 4},
+    {"bc3_unorm_block", 16, 4, 0, Unorm, 0, kRgba, 4},
+    {"bc3_srgb_block", 16, 4, 0, Srgb, 0, kRgba, 4},
+    {"bc4_unorm_block", 8, 1, 0, Unorm, 0, kR, 4},
+    {"bc4_snorm_block", 8, 1, 0, Snorm, 0, kR, 4},
+    {"bc5_unorm_block", 16, 2, 0, Unorm, 0, kRg, 4},
+    {"bc5_snorm_block", 16, 2, 0, Snorm, 0, kRg, 4},
+    {"bc6h_ufloat_block", 16, 3, 0, Float, 0, kRgb, 4},
+    {"bc6h_sfloat_block", 16, 3, 0, Float, 0, kRgb, 4},
+    {"bc7_unorm_block", 16, 4, 0, Unorm, 0, kRgba, 4},
+    {"bc7_srgb_block", 16, 4, 0, Srgb, 0, kRgba, 4},
 };
 static_assert(std::size(kFormats) == size_t(F::Count));
 
@@ -124,18 +141,15 @@ uint32_t to_shared_exponent(const Words& words) {
   return scaled(c[0]) | scaled(c[1]) << 9 | scaled(c[2]) << 18 | uint32_t(exponent) << 27;
 }
 
-// Convert by "sRGB EOTF" of the Khronos Data Format specification 1.3, and by its inverse.
 float from_srgb(uint8_t byte) {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> out;
-    for (size_t i = 0; i < 256; ++i) {
-      const double x = double(i) / 255.0;
-      out[i] = float(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
-    }
+    for (size_t i = 0; i < 256; ++i) out[i] = float(linear_of_srgb(double(i) / 255.0));
     return out;
   }();
   return table[byte];
 }
+// This is the inverse of linear_of_srgb().
 double to_srgb(double x) {
   return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
 }
@@ -276,6 +290,10 @@ const FormatInfo& info_of(TexelFormat format) {
   return kFormats[size_t(format)];
 }
 
+double linear_of_srgb(double x) {
+  return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+}
+
 float from_half(uint16_t bits) {
   const float magnitude = from_small(bits & 0x7fffu, 10);
   return bits & 0x8000u ? -magnitude : magnitude;
@@ -312,6 +330,10 @@ Words decode(TexelFormat format, const std::byte* from) {
   }
   if (is_bgra(format)) std::swap(words[0], words[2]);
   return words;
+}
+
+Words decode_at(TexelFormat format, const std::byte* from, uint32_t x, uint32_t y) {
+  return info_of(format).block == 1 ? decode(format, from) : decode_block(format, from, y % 4 * 4 + x % 4);
 }
 
 Words keep_channels(TexelFormat format, Words words) {

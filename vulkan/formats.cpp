@@ -26,6 +26,11 @@ bool has_depth_and_stencil(VkFormat format) {
   return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
 }
 
+// Returns whether texels of a format come in blocks, which can be copied and sampled, and nothing else.
+bool has_blocks(const std::optional<exec::TexelFormat>& format) {
+  return format && exec::info_of(*format).block > 1;
+}
+
 // Returns whether shaders may store to images of a format: those that SPIR-V has names for, and that of most
 // swapchains, which ray tracers store to before they copy.
 bool can_store(exec::TexelFormat format) {
@@ -41,7 +46,7 @@ bool can_be_atomic(exec::TexelFormat format) {
 // Returns whether triangles of acceleration structures may have corners of a format.
 bool can_be_vertex(VkFormat format, const std::optional<exec::TexelFormat>& texels) {
   if (format == VK_FORMAT_R32G32B32_SFLOAT) return true;
-  if (!texels || is_depth(format)) return false;
+  if (!texels || is_depth(format) || has_blocks(texels)) return false;
   const exec::FormatInfo& info = exec::info_of(*texels);
   return info.channels >= 2 && info.bits >= 16 && !exec::is_integer(info);
 }
@@ -80,6 +85,8 @@ VkFormatFeatureFlags2 image_features_of(VkFormat format) {
   if (!texels) return 0;
   VkFormatFeatureFlags2 out = kTransfer | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT |
                               VK_FORMAT_FEATURE_2_BLIT_SRC_BIT | VK_FORMAT_FEATURE_2_BLIT_DST_BIT;
+  if (has_blocks(texels))
+    return (out & ~VK_FORMAT_FEATURE_2_BLIT_DST_BIT) | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
   if (is_depth(format)) return out | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
   if (format == VK_FORMAT_S8_UINT) return out;
   if (!exec::is_integer(exec::info_of(*texels))) out |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
@@ -92,7 +99,7 @@ VkFormatFeatureFlags2 buffer_features_of(VkFormat format) {
   const auto texels = format_of(format);
   const VkFormatFeatureFlags2 vertex =
       can_be_vertex(format, texels) ? VK_FORMAT_FEATURE_2_ACCELERATION_STRUCTURE_VERTEX_BUFFER_BIT_KHR : 0;
-  if (!texels || is_depth(format) || format == VK_FORMAT_S8_UINT) return vertex;
+  if (!texels || is_depth(format) || format == VK_FORMAT_S8_UINT || has_blocks(texels)) return vertex;
   VkFormatFeatureFlags2 out = vertex | VK_FORMAT_FEATURE_2_UNIFORM_TEXEL_BUFFER_BIT;
   if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_BIT | kWithoutFormat;
   if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_TEXEL_BUFFER_ATOMIC_BIT;
@@ -106,7 +113,7 @@ VkFormatFeatureFlags2 attachment_features_of(const PhysicalDevice& device, VkFor
   if (has_depth_and_stencil(format))
     return device.instance.settings.is_universal ? VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT : 0;
   const auto texels = format_of(format);
-  if (!texels) return 0;
+  if (!texels || has_blocks(texels)) return 0;
   if (is_depth(format) || format == VK_FORMAT_S8_UINT)
     return VK_FORMAT_FEATURE_2_DEPTH_STENCIL_ATTACHMENT_BIT;
   return VK_FORMAT_FEATURE_2_COLOR_ATTACHMENT_BIT |
@@ -118,7 +125,7 @@ VkFormatFeatureFlags2 attachment_features_of(const PhysicalDevice& device, VkFor
 VkFormatFeatureFlags2 graphics_features_of(const PhysicalDevice& device, VkFormat format) {
   const bool is_triple = format >= VK_FORMAT_R32G32B32_UINT && format <= VK_FORMAT_R32G32B32_SFLOAT;
   const auto texels = format_of(format);
-  const bool has_colour = texels && !is_depth(format) && format != VK_FORMAT_S8_UINT &&
+  const bool has_colour = texels && !has_blocks(texels) && !is_depth(format) && format != VK_FORMAT_S8_UINT &&
                           exec::info_of(*texels).numeric != exec::Numeric::Srgb;
   const bool is_vertex = device.instance.settings.is_universal && (is_triple || has_colour);
   return is_vertex ? VK_FORMAT_FEATURE_2_VERTEX_BUFFER_BIT : 0;
@@ -148,13 +155,15 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
   *out = {};
   constexpr VkImageCreateFlags kKnownFlags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT |
                                              VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
-                                             VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT;
+                                             VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT |
+                                             VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT;
   const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
   VkFormatFeatureFlags2 features = image_features_of(format);
   if (tiling == VK_IMAGE_TILING_OPTIMAL) features |= attachment_features_of(device, format);
   const VkImageUsageFlags possible = usage_of(features);
   const bool is_usable = features && (!(usage & ~possible) || (flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
-  if (!is_tiled || !is_usable || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  const bool fits = !has_blocks(format_of(format)) || type != VK_IMAGE_TYPE_1D;
+  if (!is_tiled || !is_usable || !fits || (flags & ~kKnownFlags)) return VK_ERROR_FORMAT_NOT_SUPPORTED;
   const VkPhysicalDeviceLimits& limits = device.core.limits;
   const uint32_t width = type == VK_IMAGE_TYPE_1D   ? limits.maxImageDimension1D
                          : type == VK_IMAGE_TYPE_2D ? limits.maxImageDimension2D

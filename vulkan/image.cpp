@@ -35,12 +35,26 @@ void check_size(const Device& device, const VkImageCreateInfo& info) {
                               depth, levels, info.mipLevels));
 }
 
+// Throws Refusal when an image with blocks is asked for what only texels that stand alone can do.
+void check_blocks(const VkImageCreateInfo& info) {
+  constexpr VkImageUsageFlags kPossible =
+      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  const bool is_usable = !(info.usage & ~kPossible) || (info.flags & VK_IMAGE_CREATE_EXTENDED_USAGE_BIT);
+  if (info.imageType == VK_IMAGE_TYPE_1D || info.samples != VK_SAMPLE_COUNT_1_BIT || !is_usable)
+    throw Refusal(
+        VK_ERROR_FORMAT_NOT_SUPPORTED,
+        fmt::format("images of format {} have two or three axes and one sample, and can only be copied "
+                    "and sampled",
+                    int(info.format)));
+}
+
 exec::ImageView whole_of(const Device& device, const VkImageCreateInfo& info) {
   exec::ImageView out;
   out.format = texel_format_of(info.format);
   check_size(device, info);
   if (info.flags & VK_IMAGE_CREATE_SPARSE_BINDING_BIT)
     throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "sparse images are not there");
+  if (exec::info_of(out.format).block > 1) check_blocks(info);
   if (!(kSamples & info.samples))
     throw Refusal(
         VK_ERROR_FEATURE_NOT_PRESENT,
@@ -138,8 +152,8 @@ void GetImageSubresourceLayout(Device&, VkImage image, const VkImageSubresource*
   const exec::ImageView& whole = image->whole;
   const uint32_t level = part->mipLevel;
   out->offset = whole.address_of({0, 0, 0, part->arrayLayer, level}) - whole.base;
-  out->rowPitch = VkDeviceSize{whole.extent(0, level)} * whole.texel_bytes();
-  out->depthPitch = out->rowPitch * whole.extent(1, level);
+  out->rowPitch = VkDeviceSize{whole.blocks(0, level)} * whole.texel_bytes();
+  out->depthPitch = out->rowPitch * whole.blocks(1, level);
   out->arrayPitch = out->size = out->depthPitch * whole.extent(2, level);
 }
 

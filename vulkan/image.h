@@ -50,6 +50,10 @@ inline constexpr VkSampleCountFlags kSamples = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE
 std::optional<exec::TexelFormat> format_of(VkFormat format);
 // Returns it, or throws Refusal that names the format.
 exec::TexelFormat texel_format_of(VkFormat format);
+// Returns the texels along each side of an image's blocks, or 1.
+inline uint32_t block_of(const Image& image) {
+  return exec::info_of(image.whole.format).block;
+}
 // Returns what the device can do with images of a format, and with texels in buffers.
 VkFormatFeatureFlags2 image_features_of(VkFormat format);
 VkFormatFeatureFlags2 buffer_features_of(VkFormat format);

@@ -92,6 +92,21 @@ exec::Words border_of(VkBorderColor color) {
   }
 }
 
+// Gives a view its format. A view of blocks in a format without them shows each block as a texel.
+void show_as(exec::ImageView& view, exec::TexelFormat format) {
+  const exec::FormatInfo &stored = exec::info_of(view.format), &shown = exec::info_of(format);
+  if (stored.bytes != shown.bytes)
+    throw Refusal(fmt::format("{} has texels or blocks of {} bytes, and those of its view have {}", view.name,
+                              stored.bytes, shown.bytes));
+  if (stored.block != shown.block && (shown.block > 1 || view.levels > 1))
+    throw Refusal(fmt::format("a view of {} can show its blocks as texels only of one level", view.name));
+  if (stored.block != shown.block) {
+    view.width = exec::blocks_of(view.width, stored.block);
+    view.height = exec::blocks_of(view.height, stored.block);
+  }
+  view.format = format;
+}
+
 }  // namespace
 
 VkResult CreateImageView(Device& device, const VkImageViewCreateInfo* info, VkImageView* out) {
@@ -99,7 +114,7 @@ VkResult CreateImageView(Device& device, const VkImageViewCreateInfo* info, VkIm
   auto made = std::make_unique<VkImageView_T>();
   exec::ImageView& view = made->view;
   view = exec::part_of(info->image->whole, range_of(*info->image, info->subresourceRange));
-  view.format = texel_format_of(info->format), view.shape = shape_of(info->viewType);
+  show_as(view, texel_format_of(info->format)), view.shape = shape_of(info->viewType);
   const VkComponentMapping& map = info->components;
   view.swizzle = {component_of(map.r, exec::Component::Red), component_of(map.g, exec::Component::Green),
                   component_of(map.b, exec::Component::Blue), component_of(map.a, exec::Component::Alpha)};

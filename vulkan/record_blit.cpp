@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <fmt/format.h>
 #include <vector>
 
 #include "vulkan/command_buffer.h"
@@ -36,7 +37,7 @@ exec::Words read(const Device& device, const Blit& blit, uint32_t layer, std::ar
     at[size_t(axis)] = std::clamp(at[size_t(axis)], 0, int(whole.extent(axis, blit.from_level)) - 1);
   const exec::TexelIndex place{uint32_t(at[0]), uint32_t(at[1]), uint32_t(at[2]), blit.from_layer + layer,
                                blit.from_level};
-  return exec::decode(whole.format, texel_of(device, *blit.from, place));
+  return exec::decode_at(whole.format, texel_of(device, *blit.from, place), place.x, place.y);
 }
 
 // Returns the mean of the eight texels around a place, weighted by their nearness.
@@ -89,6 +90,7 @@ void check_destination(const Blit& blit) {
   const exec::ImageView& whole = blit.to->whole;
   if (whole.samples > 1 || blit.from->whole.samples > 1)
     throw Refusal("a blit of an image of several samples");
+  if (block_of(*blit.to) > 1) throw Refusal(fmt::format("a blit to {}, which has blocks", whole.name));
   bool fits = blit.to_level < whole.levels && blit.to_layer + blit.layers <= whole.layers &&
               blit.from_level < blit.from->whole.levels &&
               blit.from_layer + blit.layers <= blit.from->whole.layers;

@@ -14,22 +14,20 @@
 namespace glint::vulkan {
 namespace {
 
-// Names a box of texels of an image. Slices of an image with three axes and layers of others count alike.
+// Names a box of an image. Slices of an image with three axes and layers of others count alike.
 struct Box {
   const Image* image;
   uint32_t level, first_layer;
-  VkOffset3D offset;
+  VkOffset3D offset;               // texels
+  uint32_t columns, rows, slices;  // blocks of texels, or texels that stand alone
 
-  exec::TexelIndex at(uint32_t y, uint32_t slice) const {
+  exec::TexelIndex at(uint32_t row, uint32_t slice) const {
     const bool has_depth = image->type == VK_IMAGE_TYPE_3D;
-    return {uint32_t(offset.x), uint32_t(offset.y) + y, has_depth ? uint32_t(offset.z) + slice : 0,
-            first_layer + (has_depth ? 0 : slice), level};
+    return {uint32_t(offset.x), uint32_t(offset.y) + row * block_of(*image),
+            has_depth ? uint32_t(offset.z) + slice : 0, first_layer + (has_depth ? 0 : slice), level};
   }
+  uint64_t row_bytes() const { return uint64_t{columns} * image->whole.texel_bytes(); }
 };
-
-Box box_of(VkImage image, const VkImageSubresourceLayers& part, const VkOffset3D& offset) {
-  return {image, part.mipLevel, part.baseArrayLayer * image->whole.samples, offset};
-}
 
 // Returns the slices or layers of a part. The samples of a texel are layers, too.
 uint32_t slices_of(const Image& image, const VkImageSubresourceLayers& part, const VkExtent3D& extent) {
@@ -39,49 +37,84 @@ uint32_t slices_of(const Image& image, const VkImageSubresourceLayers& part, con
                                                       : part.layerCount * samples;
 }
 
-// Throws Refusal when the box leaves the image.
-void check_box(const Box& box, const VkExtent3D& extent, uint32_t slices) {
+// Returns the blocks along an axis from `offset` on. Throws Refusal when some are not meant as a whole,
+// unless the level ends in them.
+uint32_t whole_blocks(const Image& image, uint32_t level, int axis, int32_t offset, uint32_t extent) {
+  const uint32_t block = block_of(image);
+  if (extent % block && uint64_t(offset) + extent != image.whole.extent(axis, level))
+    throw Refusal(
+        fmt::format("{} texels from {} on are no whole blocks of {}", extent, offset, image.whole.name));
+  return exec::blocks_of(extent, block);
+}
+
+// Throws Refusal when the box leaves the image, or begins within a block. Choice: a block at the end of a
+// level may be named with all of its texels, although Vulkan wants those that the level has.
+void check_box(const Box& box) {
   const exec::ImageView& whole = box.image->whole;
   const bool has_depth = box.image->type == VK_IMAGE_TYPE_3D;
+  const auto block = int32_t(block_of(*box.image));
   const auto fits = [](int32_t first, uint32_t count, uint32_t there) {
     return first >= 0 && uint32_t(first) <= there && count <= there - uint32_t(first);
   };
   if (!box.image->memory) throw Refusal(fmt::format("{} is not bound to memory", whole.name));
-  if (box.level >= whole.levels || !fits(box.offset.x, extent.width, whole.extent(0, box.level)) ||
-      !fits(box.offset.y, extent.height, whole.extent(1, box.level)) ||
-      !(has_depth ? fits(box.offset.z, slices, whole.extent(2, box.level))
-                  : fits(int32_t(box.first_layer), slices, whole.layers)))
-    throw Refusal(fmt::format("a region of {} x {} x {} texels at level {} leaves {}", extent.width,
-                              extent.height, slices, box.level, whole.name));
+  if (box.offset.x % block || box.offset.y % block)
+    throw Refusal(fmt::format("a region begins within a block of {}", whole.name));
+  if (box.level >= whole.levels || !fits(box.offset.x / block, box.columns, whole.blocks(0, box.level)) ||
+      !fits(box.offset.y / block, box.rows, whole.blocks(1, box.level)) ||
+      !(has_depth ? fits(box.offset.z, box.slices, whole.extent(2, box.level))
+                  : fits(int32_t(box.first_layer), box.slices, whole.layers)))
+    throw Refusal(fmt::format("a region of {} x {} x {} {} at level {} leaves {}", box.columns, box.rows,
+                              box.slices, block > 1 ? "blocks" : "texels", box.level, whole.name));
+}
+
+// Returns the box of `extent` texels, if the image has it.
+Box box_of(VkImage image, const VkImageSubresourceLayers& part, const VkOffset3D& offset,
+           const VkExtent3D& extent) {
+  const Box out{image,
+                part.mipLevel,
+                part.baseArrayLayer * image->whole.samples,
+                offset,
+                whole_blocks(*image, part.mipLevel, 0, offset.x, extent.width),
+                whole_blocks(*image, part.mipLevel, 1, offset.y, extent.height),
+                slices_of(*image, part, extent)};
+  check_box(out);
+  return out;
 }
 
 enum class Direction : bool { ToImage, ToBuffer };
 
-void copy_rows(Queue& queue, VkBuffer buffer, const VkBufferImageCopy2& region, const Box& box,
-               uint32_t slices, Direction direction) {
-  const uint64_t texel = box.image->whole.texel_bytes();
-  const uint64_t row = (region.bufferRowLength ? region.bufferRowLength : region.imageExtent.width) * texel;
-  const uint64_t slice =
-      row * (region.bufferImageHeight ? region.bufferImageHeight : region.imageExtent.height);
-  const uint64_t bytes = region.imageExtent.width * texel;
-  for (uint32_t z = 0; z < slices; ++z)
-    for (uint32_t y = 0; y < region.imageExtent.height; ++y) {
-      std::byte* const in_buffer =
-          bytes_of(queue.device, buffer, region.bufferOffset + z * slice + y * row, bytes).data;
-      std::byte* const in_image = texel_of(queue.device, *box.image, box.at(y, z));
+// Returns the blocks of a row or a column in a buffer: as many as the image has, unless `texels` says more.
+uint64_t blocks_in_buffer(const Image& image, uint32_t texels, uint32_t in_image) {
+  if (texels % block_of(image))
+    throw Refusal(
+        fmt::format("rows of {} texels in a buffer are no whole blocks of {}", texels, image.whole.name));
+  return texels ? texels / block_of(image) : in_image;
+}
+
+void copy_rows(Queue& queue, VkBuffer buffer, VkDeviceSize offset, const Box& box, uint64_t row_bytes,
+               uint64_t rows, Direction direction) {
+  const uint64_t bytes = box.row_bytes();
+  for (uint32_t slice = 0; slice < box.slices; ++slice)
+    for (uint32_t row = 0; row < box.rows; ++row) {
+      const uint64_t at = offset + (slice * rows + row) * row_bytes;
+      std::byte* const in_buffer = bytes_of(queue.device, buffer, at, bytes).data;
+      std::byte* const in_image = texel_of(queue.device, *box.image, box.at(row, slice));
       const bool to_image = direction == Direction::ToImage;
       std::memmove(to_image ? in_image : in_buffer, to_image ? in_buffer : in_image, bytes);
     }
-  queue.device.clock.add_transfer(2 * bytes * region.imageExtent.height * slices);
+  queue.device.clock.add_transfer(2 * bytes * box.rows * box.slices);
 }
 
 void record_copy(CommandBuffer& commands, VkBuffer buffer, VkImage image, const VkBufferImageCopy2& region,
                  Direction direction) {
   if (image->whole.samples > 1) throw Refusal("a copy between a buffer and an image of several samples");
-  const Box box = box_of(image, region.imageSubresource, region.imageOffset);
-  const uint32_t slices = slices_of(*image, region.imageSubresource, region.imageExtent);
-  check_box(box, region.imageExtent, slices);
-  commands.record([=](Queue& queue) { copy_rows(queue, buffer, region, box, slices, direction); });
+  const Box box = box_of(image, region.imageSubresource, region.imageOffset, region.imageExtent);
+  const uint64_t row_bytes =
+      blocks_in_buffer(*image, region.bufferRowLength, box.columns) * image->whole.texel_bytes();
+  const uint64_t rows = blocks_in_buffer(*image, region.bufferImageHeight, box.rows);
+  commands.record([=, offset = region.bufferOffset](Queue& queue) {
+    copy_rows(queue, buffer, offset, box, row_bytes, rows, direction);
+  });
 }
 
 VkBufferImageCopy2 newer(const VkBufferImageCopy& region) {
@@ -97,6 +130,7 @@ VkBufferImageCopy2 newer(const VkBufferImageCopy& region) {
 
 void record_clear(CommandBuffer& commands, VkImage image, const exec::Words& words, uint32_t count,
                   const VkImageSubresourceRange* ranges) {
+  if (block_of(*image) > 1) throw Refusal(fmt::format("a clear of {}, which has blocks", image->whole.name));
   for (uint32_t i = 0; i < count; ++i)
     commands.record([=, range = range_of(*image, ranges[i])](Queue& queue) {
       const exec::ImageView& whole = image->whole;
@@ -136,22 +170,27 @@ void CmdCopyImageToBuffer(CommandBuffer& commands, VkImage from, VkImageLayout, 
 void CmdCopyImage2(CommandBuffer& commands, const VkCopyImageInfo2* info) {
   for (uint32_t i = 0; i < info->regionCount; ++i) {
     const VkImageCopy2& region = info->pRegions[i];
-    const Box from = box_of(info->srcImage, region.srcSubresource, region.srcOffset);
-    const Box to = box_of(info->dstImage, region.dstSubresource, region.dstOffset);
-    const uint32_t slices = std::max(slices_of(*info->srcImage, region.srcSubresource, region.extent),
-                                     slices_of(*info->dstImage, region.dstSubresource, region.extent));
-    const uint32_t texel = info->srcImage->whole.texel_bytes();
-    if (texel != info->dstImage->whole.texel_bytes())
+    if (info->srcImage->whole.texel_bytes() != info->dstImage->whole.texel_bytes())
       throw Refusal("the texels of both images differ in size");
     if (info->srcImage->whole.samples != info->dstImage->whole.samples)
       throw Refusal("a copy between images that differ in their number of samples");
-    check_box(from, region.extent, slices), check_box(to, region.extent, slices);
-    commands.record([=, extent = region.extent](Queue& queue) {
-      for (uint32_t z = 0; z < slices; ++z)
-        for (uint32_t y = 0; y < extent.height; ++y)
-          std::memmove(texel_of(queue.device, *to.image, to.at(y, z)),
-                       texel_of(queue.device, *from.image, from.at(y, z)), uint64_t{extent.width} * texel);
-      queue.device.clock.add_transfer(uint64_t{2} * extent.width * extent.height * slices * texel);
+    Box from = box_of(info->srcImage, region.srcSubresource, region.srcOffset, region.extent);
+    // The extent has the source's texels. Where only one image has blocks, a block is copied as a texel.
+    Box to = {info->dstImage,
+              region.dstSubresource.mipLevel,
+              region.dstSubresource.baseArrayLayer * info->dstImage->whole.samples,
+              region.dstOffset,
+              from.columns,
+              from.rows,
+              slices_of(*info->dstImage, region.dstSubresource, region.extent)};
+    from.slices = to.slices = std::max(from.slices, to.slices);
+    check_box(from), check_box(to);
+    commands.record([=](Queue& queue) {
+      for (uint32_t slice = 0; slice < from.slices; ++slice)
+        for (uint32_t row = 0; row < from.rows; ++row)
+          std::memmove(texel_of(queue.device, *to.image, to.at(row, slice)),
+                       texel_of(queue.device, *from.image, from.at(row, slice)), from.row_bytes());
+      queue.device.clock.add_transfer(2 * from.row_bytes() * from.rows * from.slices);
     });
   }
 }

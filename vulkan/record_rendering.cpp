@@ -23,6 +23,7 @@ struct Layers {
 void clear(Queue& queue, const exec::ImageView& view, const VkRect2D& area, const Layers& layers,
            const exec::Words& words) {
   const uint32_t texel_bytes = view.texel_bytes();
+  if (exec::info_of(view.format).block > 1) throw Refusal("an attachment with blocks");
   std::array<std::byte, 16> texel{};
   exec::encode(view.format, words, texel.data());
   const auto first = [](int32_t at) { return uint32_t(std::max(at, 0)); };

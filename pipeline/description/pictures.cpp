@@ -280,10 +280,15 @@ Picture PictureMaker::make(const ImageDescription& image, const DeclaredImage& d
 std::vector<uint32_t> texels_as_words(const exec::ImageView& view, const std::byte* data) {
   const exec::FormatInfo& info = exec::info_of(view.format);
   std::vector<uint32_t> out;
-  const size_t count = size_t{view.width} * view.height * view.depth * view.layers;
-  out.reserve(4 * count);
-  for (size_t i = 0; i < count; ++i)
-    for (uint32_t word : exec::decode(view.format, data + i * info.bytes)) out.push_back(word);
+  const size_t slices = size_t{view.depth} * view.layers, row_bytes = size_t{view.blocks(0, 0)} * info.bytes;
+  out.reserve(4 * view.width * view.height * slices);
+  for (size_t slice = 0; slice < slices; ++slice)
+    for (uint32_t y = 0; y < view.height; ++y) {
+      const std::byte* const row = data + (slice * view.blocks(1, 0) + y / info.block) * row_bytes;
+      for (uint32_t x = 0; x < view.width; ++x)
+        for (uint32_t word : exec::decode_at(view.format, row + x / info.block * info.bytes, x, y))
+          out.push_back(word);
+    }
   return out;
 }
 

@@ -194,7 +194,7 @@ void read_resources(Reading& r, TableReader& root) {
 
 std::vector<std::string> format_names() {
   std::vector<std::string> out;
-  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i)
+  for (size_t i = 0; i < size_t(exec::kFirstBlockFormat); ++i)
     out.emplace_back(exec::info_of(exec::TexelFormat(i)).name);
   return out;
 }
@@ -203,7 +203,7 @@ std::optional<exec::TexelFormat> format_named(const std::string& name) {
   if (name == "r11f_g11f_b10f") return exec::TexelFormat::R11g11b10Float;
   if (name == "rgb10_a2") return exec::TexelFormat::Rgb10a2Unorm;
   if (name == "rgb10_a2ui") return exec::TexelFormat::Rgb10a2Uint;
-  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i) {
+  for (size_t i = 0; i < size_t(exec::kFirstBlockFormat); ++i) {
     const std::string full(exec::info_of(exec::TexelFormat(i)).name);
     const size_t bar = full.find('_');
     const std::string channels = full.substr(0, bar),

@@ -69,7 +69,7 @@ std::vector<PlainImage> add_images(OpLab& lab, const Geometry& geometry, Formats
                                    Random& random) {
   std::vector<PlainImage> out;
   const size_t shift = random.below(64);
-  for (size_t i = 0; i < size_t(exec::TexelFormat::Count); ++i) {
+  for (size_t i = 0; i < size_t(exec::kFirstBlockFormat); ++i) {
     PlainImage image;
     image.format = format_of(exec::info_of(exec::TexelFormat(i)).name);
     if (formats != Formats::All && image.format.is_integer() != (formats == Formats::Integers)) continue;

@@ -72,8 +72,9 @@ class Capsule(VulkanTest):
         self.assertIn("bvh.format", subprocess.run([GLINT, "compare", "bvh2", "bvh8"], cwd=self.folder, capture_output=True,
                                                    text=True, timeout=100).stdout)
 
-    def test_a_capsule_keeps_anisotropic_samplers(self):
-        for test, numbers in (("an anisotropic sampler takes the mean along the longer gradient", (0.5, 1, 1)),):
+    def test_a_capsule_keeps_anisotropic_samplers_and_images_with_blocks(self):
+        for test, numbers in (("an anisotropic sampler takes the mean along the longer gradient", (0.5, 1, 1)),
+                              ("an image with blocks is filled by copies and fetched texel by texel", (10,) * 4 + (20,) * 4 + (30,) * 2)):
             with self.subTest(test):
                 capsules, _ = self.save(test, "dispatch 0")
                 self.replay(capsules[0], "--out", "again")

@@ -129,7 +129,7 @@ TEST_CASE("a swizzle chooses what fetches, samples and gathers show") {
 }
 
 TEST_CASE("every value of a packed format of 8 and 16 bits has the channels that its name says") {
-  for (size_t i = 0; i < size_t(F::Count); ++i) {
+  for (size_t i = 0; i < size_t(kFirstBlockFormat); ++i) {
     const F format = F(i);
     const FormatInfo& info = info_of(format);
     if (info.bits != 0 || info.bytes > 2) continue;
