@@ -66,8 +66,9 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
     uint64_t all = 0, timed = 0;
     glint::Cycle cycles = 0;  // of those that were timed
   } launches;
-  uint64_t frames = 0;   // that were presented
-  uint64_t builds = 0;   // of acceleration structures
-  bool is_lost = false;  // A launch did something that ends the device.
+  uint64_t compute_threads = 0;  // that were launched
+  uint64_t frames = 0;           // that were presented
+  uint64_t builds = 0;           // of acceleration structures
+  bool is_lost = false;          // A launch did something that ends the device.
   std::deque<VkQueue_T> queues;
 };

@@ -40,7 +40,13 @@ bool can_store(exec::TexelFormat format) {
 }
 
 bool can_be_atomic(exec::TexelFormat format) {
-  return format == exec::TexelFormat::R32Uint || format == exec::TexelFormat::R32Sint;
+  return format == exec::TexelFormat::R32Uint || format == exec::TexelFormat::R32Sint ||
+         format == exec::TexelFormat::R32Float;
+}
+
+// Returns whether texels are integers of 64 bits, which shaders store, load and change, and cannot sample.
+bool has_64_bits(VkFormat format) {
+  return format == VK_FORMAT_R64_UINT || format == VK_FORMAT_R64_SINT;
 }
 
 // Returns whether triangles of acceleration structures may have corners of a format.
@@ -85,6 +91,9 @@ VkFormatFeatureFlags2 image_features_of(VkFormat format) {
   if (!texels) return 0;
   VkFormatFeatureFlags2 out = kTransfer | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT |
                               VK_FORMAT_FEATURE_2_BLIT_SRC_BIT | VK_FORMAT_FEATURE_2_BLIT_DST_BIT;
+  if (has_64_bits(format))
+    return kTransfer | VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_2_STORAGE_IMAGE_ATOMIC_BIT |
+           kWithoutFormat;
   if (has_blocks(texels))
     return (out & ~VK_FORMAT_FEATURE_2_BLIT_DST_BIT) | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
   if (is_depth(format)) return out | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;

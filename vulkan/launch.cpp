@@ -101,6 +101,8 @@ void launch(Queue& queue, const Bindings& bound, const std::array<uint32_t, 3>& 
   const LaunchOf what{"dispatch", {groups[0], groups[1], groups[2]}, *bound.pipeline};
   const auto set_size = [&](pipeline::LaunchBuilder& builder) {
     builder.set_blocks(0, groups, {bound.pipeline->name, 0, 0});
+    const auto& [x, y, z] = builder.world.launch_size;
+    queue.device.compute_threads += uint64_t{x} * y * z;
     exec::set_first_block(builder.world, base);
     return true;
   };

@@ -93,6 +93,13 @@ void set_universal_limits(VkPhysicalDeviceLimits& l) {
   l.maxVertexOutputComponents = l.maxFragmentInputComponents = 128;
   l.maxDrawIndexedIndexValue = 0xffff'ffff, l.maxDrawIndirectCount = 1 << 16;
   l.lineWidthRange[1] = 8.0f, l.lineWidthGranularity = 1.0f;
+  l.maxViewports = 16, l.pointSizeRange[1] = 64.0f, l.pointSizeGranularity = 1.0f;
+  l.maxClipDistances = l.maxCullDistances = l.maxCombinedClipAndCullDistances = 8;
+  l.maxTessellationGenerationLevel = 64, l.maxTessellationPatchSize = 32;
+  l.maxTessellationControlPerVertexInputComponents = l.maxTessellationControlPerVertexOutputComponents = 64;
+  l.maxTessellationControlPerPatchOutputComponents = 120;
+  l.maxTessellationControlTotalOutputComponents = 2048;
+  l.maxTessellationEvaluationInputComponents = l.maxTessellationEvaluationOutputComponents = 64;
   l.maxGeometryShaderInvocations = 32, l.maxGeometryOutputVertices = 256;
   l.maxGeometryInputComponents = l.maxGeometryOutputComponents = 64;
   l.maxGeometryTotalOutputComponents = 1024;

@@ -1,9 +1,11 @@
-// Makes query pools, and answers what was queried: timestamps, which the device's clock gives, and properties
-// of acceleration structures.
+// Makes query pools, and answers what was queried: timestamps, which the device's clock gives, properties of
+// acceleration structures, and how many compute shaders ran. Nothing is drawn, so statistics of graphics and
+// samples that pass are 0.
 // SPDX-License-Identifier: Apache-2.0
 #include "vulkan/query.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <ctime>
 #include <fmt/format.h>
@@ -20,6 +22,8 @@ namespace {
 
 bool is_known(VkQueryType type) {
   switch (int(type)) {
+    case VK_QUERY_TYPE_OCCLUSION:
+    case VK_QUERY_TYPE_PIPELINE_STATISTICS:
     case VK_QUERY_TYPE_TIMESTAMP:
     case VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR:
     case VK_QUERY_TYPE_ACCELERATION_STRUCTURE_SERIALIZATION_SIZE_KHR:
@@ -31,10 +35,16 @@ bool is_known(VkQueryType type) {
   }
 }
 
-VkDeviceSize bytes_of_results(uint32_t count, VkDeviceSize stride, VkQueryResultFlags flags) {
+// Returns the numbers of a query.
+uint32_t numbers_of(const VkQueryPool_T& pool) {
+  return pool.type == VK_QUERY_TYPE_PIPELINE_STATISTICS ? uint32_t(std::popcount(pool.statistics)) : 1;
+}
+
+VkDeviceSize bytes_of_results(const VkQueryPool_T& pool, uint32_t count, VkDeviceSize stride,
+                              VkQueryResultFlags flags) {
   const VkDeviceSize number = flags & VK_QUERY_RESULT_64_BIT ? sizeof(uint64_t) : sizeof(uint32_t);
-  const VkDeviceSize last = flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT ? 2 * number : number;
-  return count ? (count - 1) * stride + last : 0;
+  const uint32_t numbers = numbers_of(pool) + ((flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) != 0);
+  return count ? (count - 1) * stride + numbers * number : 0;
 }
 
 template <class Number>
@@ -43,16 +53,24 @@ void put(std::byte* to, uint32_t index, uint64_t value) {
   std::memcpy(to + index * sizeof number, &number, sizeof number);
 }
 
-// Writes results as vkGetQueryPoolResults says. Returns whether all were available.
+// Writes results as vkGetQueryPoolResults says. Returns whether all were available. Of statistics only the
+// number of threads of compute shaders is not 0.
 template <class Number>
 bool write_results(const VkQueryPool_T& pool, uint32_t first, uint32_t count, std::byte* to,
                    VkDeviceSize stride, VkQueryResultFlags flags) {
+  const uint32_t numbers = numbers_of(pool);
+  const auto threads = uint32_t(
+      std::popcount(pool.statistics & (VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT - 1)));
+  const bool counts_threads = pool.type != VK_QUERY_TYPE_PIPELINE_STATISTICS ||
+                              (pool.statistics & VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT);
   bool all = true;
   for (uint32_t i = 0; i < count; ++i, to += stride) {
     const std::optional<uint64_t>& value = pool.values[first + i];
     all = all && value;
-    if (value || (flags & VK_QUERY_RESULT_PARTIAL_BIT)) put<Number>(to, 0, value.value_or(0));
-    if (flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) put<Number>(to, 1, value.has_value());
+    if (value || (flags & VK_QUERY_RESULT_PARTIAL_BIT))
+      for (uint32_t n = 0; n < numbers; ++n)
+        put<Number>(to, n, counts_threads && n == threads ? value.value_or(0) : 0);
+    if (flags & VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) put<Number>(to, numbers, value.has_value());
   }
   return all;
 }
@@ -78,8 +96,12 @@ void check_range(VkQueryPool pool, uint32_t first, uint32_t count) {
 VkResult CreateQueryPool(Device&, const VkQueryPoolCreateInfo* info, VkQueryPool* out) {
   if (!is_known(info->queryType))
     throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT,
-                  "only timestamps and properties of acceleration structures can be queried");
-  *out = new VkQueryPool_T{std::vector<std::optional<uint64_t>>(info->queryCount)};
+                  "only timestamps, properties of acceleration structures, statistics of pipelines and "
+                  "occlusion can be queried");
+  const bool has_statistics = info->queryType == VK_QUERY_TYPE_PIPELINE_STATISTICS;
+  *out = new VkQueryPool_T{info->queryType, has_statistics ? info->pipelineStatistics : 0,
+                           std::vector<std::optional<uint64_t>>(info->queryCount),
+                           std::vector<uint64_t>(info->queryCount)};
   return VK_SUCCESS;
 }
 void DestroyQueryPool(Device&, VkQueryPool pool) {
@@ -94,7 +116,7 @@ void ResetQueryPool(Device&, VkQueryPool pool, uint32_t first, uint32_t count) {
 VkResult GetQueryPoolResults(Device& device, VkQueryPool pool, uint32_t first, uint32_t count, size_t bytes,
                              void* out, VkDeviceSize stride, VkQueryResultFlags flags) {
   check_range(pool, first, count);
-  if (bytes_of_results(count, stride, flags) > bytes)
+  if (bytes_of_results(*pool, count, stride, flags) > bytes)
     throw Refusal(fmt::format("{} results do not fit into {} bytes", count, bytes));
   const auto is_there = [&] {
     return std::all_of(pool->values.begin() + first, pool->values.begin() + first + count,
@@ -111,6 +133,18 @@ VkResult GetQueryPoolResults(Device& device, VkQueryPool pool, uint32_t first, u
 void CmdResetQueryPool(CommandBuffer& commands, VkQueryPool pool, uint32_t first, uint32_t count) {
   check_range(pool, first, count);
   commands.record([=](Queue&) { reset(pool, first, count); });
+}
+
+void CmdBeginQuery(CommandBuffer& commands, VkQueryPool pool, uint32_t query, VkQueryControlFlags) {
+  check_range(pool, query, 1);
+  commands.record([=](Queue& queue) { pool->begun[query] = queue.device.compute_threads; });
+}
+void CmdEndQuery(CommandBuffer& commands, VkQueryPool pool, uint32_t query) {
+  check_range(pool, query, 1);
+  commands.record([=](Queue& queue) {
+    const bool is_counted = pool->type == VK_QUERY_TYPE_PIPELINE_STATISTICS;
+    pool->values[query] = is_counted ? queue.device.compute_threads - pool->begun[query] : 0;
+  });
 }
 
 void CmdWriteTimestamp(CommandBuffer& commands, VkPipelineStageFlagBits, VkQueryPool pool, uint32_t query) {
@@ -148,7 +182,7 @@ void CmdCopyQueryPoolResults(CommandBuffer& commands, VkQueryPool pool, uint32_t
                              VkBuffer buffer, VkDeviceSize offset, VkDeviceSize stride,
                              VkQueryResultFlags flags) {
   check_range(pool, first, count);
-  const VkDeviceSize bytes = bytes_of_results(count, stride, flags);
+  const VkDeviceSize bytes = bytes_of_results(*pool, count, stride, flags);
   bytes_of(commands.device, buffer, offset, bytes);
   commands.record([=](Queue& queue) {
     write_results(*pool, first, count, bytes_of(queue.device, buffer, offset, bytes).data, stride, flags);

@@ -1,4 +1,4 @@
-// Holds query pools: timestamps, and properties of acceleration structures.
+// Holds query pools: timestamps, properties of acceleration structures, and what commands did.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
@@ -8,7 +8,10 @@
 #include "vulkan/handles.h"
 
 struct VkQueryPool_T {
-  std::vector<std::optional<uint64_t>> values;  // nothing: not available
+  VkQueryType type = VK_QUERY_TYPE_TIMESTAMP;
+  VkQueryPipelineStatisticFlags statistics = 0;  // of pools of statistics
+  std::vector<std::optional<uint64_t>> values;   // nothing: not available
+  std::vector<uint64_t> begun;                   // what a query of commands counts from
 };
 
 namespace glint::vulkan {

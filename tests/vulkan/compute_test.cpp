@@ -171,5 +171,67 @@ TEST_CASE("pushed descriptors are those of the launch that follows them", "[port
   }
 }
 
+TEST_CASE("atomics change floats of 16, 32 and 64 bits in buffers and in shared memory") {
+  VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT more{};
+  more.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_2_FEATURES_EXT;
+  more.shaderBufferFloat16AtomicAdd = more.shaderBufferFloat32AtomicMinMax = VK_TRUE;
+  more.shaderSharedFloat64AtomicMinMax = VK_TRUE;
+  VkPhysicalDeviceShaderAtomicFloatFeaturesEXT first{};
+  first.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT, first.pNext = &more;
+  first.shaderBufferFloat32AtomicAdd = first.shaderBufferFloat64AtomicAdd = VK_TRUE;
+  first.shaderSharedFloat32AtomicAdd = VK_TRUE;
+  Client::Options options;
+  options.extensions = {"VK_EXT_shader_atomic_float", "VK_EXT_shader_atomic_float2"};
+  options.features.shaderFloat64 = VK_TRUE, options.more_features = &first;
+  Client client(options);
+  const MappedBuffer out = client.buffer(48);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\n#extension GL_EXT_shader_atomic_float : require\n"
+      "#extension GL_EXT_shader_atomic_float2 : require\n"
+      "#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 64) in;\n"
+      "layout(set = 0, binding = 0) buffer O { double d, e; float f, g, h; float16_t half_; };\n"
+      "shared float s; shared double m;\nvoid main() { uint i = gl_LocalInvocationIndex;\n"
+      "  if (i == 0) { s = 0; m = 0; }\n  barrier();\n"
+      "  atomicAdd(d, 0.25lf); atomicAdd(f, 0.5); atomicMin(g, -float(i)); atomicAdd(half_, float16_t(1));\n"
+      "  atomicAdd(s, 2.0); atomicMax(m, double(i));\n  barrier();\n  if (i == 0) { h = s; e = m; } }\n",
+      {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+
+  REQUIRE(client.dispatch(pipeline, set, {2, 1, 1}) == VK_SUCCESS);
+
+  CHECK(out.as<double>()[0] == 32);
+  CHECK(out.as<double>()[1] == 63);
+  CHECK(out.as<float>()[4] == 64);
+  CHECK(out.as<float>()[5] == -63);
+  CHECK(out.as<float>()[6] == 128);
+  CHECK(out.as<uint16_t>()[14] == 0x5800);  // 128 as a half
+}
+
+TEST_CASE("derivatives of compute shaders are those of the quads of a derivative group") {
+  VkPhysicalDeviceComputeShaderDerivativesFeaturesNV derivatives{};
+  derivatives.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_COMPUTE_SHADER_DERIVATIVES_FEATURES_NV;
+  derivatives.computeDerivativeGroupQuads = VK_TRUE;
+  Client::Options options;
+  options.extensions = {"VK_NV_compute_shader_derivatives"}, options.more_features = &derivatives;
+  Client client(options);
+  const MappedBuffer out = client.buffer(64 * 8);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\n#extension GL_NV_compute_shader_derivatives : require\n"
+      "layout(local_size_x = 8, local_size_y = 8, derivative_group_quadsNV) in;\n"
+      "layout(set = 0, binding = 0) buffer O { vec2 o[]; };\nvoid main() { uvec2 p = "
+      "gl_LocalInvocationID.xy;\n"
+      "  float f = float(p.x * 3 + p.y * p.y);\n  o[p.y * 8 + p.x] = vec2(dFdx(f), dFdy(f)); }\n",
+      {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+
+  for (uint32_t i = 0; i < 64; ++i) {
+    const uint32_t top = i / 8 & ~1u;
+    CHECK(out.as<float>()[2 * i] == 3);
+    CHECK(out.as<float>()[2 * i + 1] == float(2 * top + 1));
+  }
+}
+
 }  // namespace
 }  // namespace glint::test::compute_test

@@ -271,5 +271,47 @@ TEST_CASE("a format that shaders cannot store to is not announced as a storage i
   CHECK(properties.maxMipLevels == 15);
 }
 
+TEST_CASE("atomics change integers of 64 bits and floats in images") {
+  VkPhysicalDeviceShaderAtomicFloatFeaturesEXT floats{};
+  floats.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT;
+  floats.shaderImageFloat32AtomicAdd = VK_TRUE;
+  VkPhysicalDeviceShaderImageAtomicInt64FeaturesEXT integers{};
+  integers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_IMAGE_ATOMIC_INT64_FEATURES_EXT;
+  integers.pNext = &floats, integers.shaderImageInt64Atomics = VK_TRUE;
+  Client::Options options;
+  options.extensions = {"VK_EXT_shader_atomic_float", "VK_EXT_shader_image_atomic_int64"};
+  options.features.shaderInt64 = VK_TRUE, options.more_features = &integers;
+  Client client(options);
+  const VkExtent3D extent{2, 1, 1};
+  const MappedBuffer out = client.buffer(16);
+  const auto changed = [&](VkFormat format, const std::string& declaration, const std::string& change) {
+    VkFormatProperties can;
+    vkGetPhysicalDeviceFormatProperties(client.physical, format, &can);
+    CHECK(can.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT);
+    const BoundImage image = client.image(format, extent);
+    REQUIRE(client.run([&](VkCommandBuffer commands) {
+      const VkClearColorValue zero{};
+      vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &image.all);
+    }) == VK_SUCCESS);
+    const ComputePipeline pipeline = client.pipeline(
+        "#version 460\n#extension GL_EXT_shader_atomic_float : require\n"
+        "#extension GL_EXT_shader_image_int64 : require\n"
+        "#extension GL_EXT_shader_explicit_arithmetic_types : require\nlayout(local_size_x = 32) in;\n"
+        "layout(set = 0, binding = 0) buffer O { uint o; };\nlayout(set = 0, binding = 1, " +
+            declaration + " picture;\nvoid main() { " + change + " }\n",
+        {{kStorage, kStorageImage}});
+    const VkDescriptorSet set = client.set_with_image(pipeline.set_layout, out, kStorageImage,
+                                                      {nullptr, image.view, VK_IMAGE_LAYOUT_GENERAL});
+    REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+    REQUIRE(client.download(image, out, extent) == VK_SUCCESS);
+  };
+
+  changed(VK_FORMAT_R64_UINT, "r64ui) uniform u64image2D",
+          "imageAtomicAdd(picture, ivec2(1, 0), 0x100000001ul);");
+  CHECK(out.as<uint64_t>()[1] == 0x20'0000'0020);
+  changed(VK_FORMAT_R32_SFLOAT, "r32f) uniform image2D", "imageAtomicAdd(picture, ivec2(1, 0), 0.5);");
+  CHECK(out.as<float>()[1] == 16);
+}
+
 }  // namespace
 }  // namespace glint::test::image_test

@@ -153,6 +153,78 @@ TEST_CASE("timestamps grow over work and reach a buffer with their availability"
   vkDestroyQueryPool(client.device, pool, nullptr);
 }
 
+TEST_CASE("a query of statistics counts the threads of compute shaders, and none of graphics", "[portable]") {
+  Client::Options options;
+  options.features.pipelineStatisticsQuery = VK_TRUE;
+  Client client(options);
+  const MappedBuffer out = client.buffer(64), result = client.buffer(32);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 8, local_size_y = 3) in;\n"
+      "layout(set = 0, binding = 0) buffer O { uint o; };\nvoid main() { o = 1; }\n",
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+  VkQueryPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, info.queryCount = 1;
+  info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
+  info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT;
+  VkQueryPool pool = nullptr;
+  REQUIRE(vkCreateQueryPool(client.device, &info, nullptr, &pool) == VK_SUCCESS);
+  const auto dispatch = [&](VkCommandBuffer to, uint32_t groups) {
+    vkCmdBindPipeline(to, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+    vkCmdBindDescriptorSets(to, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0, nullptr);
+    vkCmdDispatch(to, groups, 1, 1);
+  };
+
+  REQUIRE(client.run([&](VkCommandBuffer to) {
+    vkCmdResetQueryPool(to, pool, 0, 1);
+    dispatch(to, 7);
+    vkCmdBeginQuery(to, pool, 0, 0);
+    dispatch(to, 2), dispatch(to, 3);
+    vkCmdEndQuery(to, pool, 0);
+    dispatch(to, 5);
+    vkCmdCopyQueryPoolResults(
+        to, pool, 0, 1, result.buffer, 0, 16,
+        VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
+  }) == VK_SUCCESS);
+
+  CHECK(result.as<uint64_t>()[0] == 5 * 24);
+  CHECK(result.as<uint64_t>()[1] == 1);
+  uint64_t again = 0;
+  CHECK(vkGetQueryPoolResults(client.device, pool, 0, 1, sizeof again, &again, 8, VK_QUERY_RESULT_64_BIT) ==
+        VK_SUCCESS);
+  CHECK(again == 5 * 24);
+  vkDestroyQueryPool(client.device, pool, nullptr);
+}
+
+TEST_CASE("statistics stand in the order of their bits, and occlusion is 0") {
+  Client client;
+  std::array<uint32_t, 4> numbers{9, 9, 9, 9};
+  for (const VkQueryType type : {VK_QUERY_TYPE_PIPELINE_STATISTICS, VK_QUERY_TYPE_OCCLUSION}) {
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, info.queryCount = 1, info.queryType = type;
+    info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT |
+                              VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT |
+                              VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT;
+    const bool has_three = type == VK_QUERY_TYPE_PIPELINE_STATISTICS;
+    VkQueryPool pool = nullptr;
+    REQUIRE(vkCreateQueryPool(client.device, &info, nullptr, &pool) == VK_SUCCESS);
+    const ComputePipeline pipeline =
+        client.pipeline("#version 460\nlayout(local_size_x = 4) in;\nvoid main() {}\n", {});
+    REQUIRE(client.run([&](VkCommandBuffer to) {
+      vkCmdResetQueryPool(to, pool, 0, 1);
+      vkCmdBeginQuery(to, pool, 0, 0);
+      vkCmdBindPipeline(to, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+      vkCmdDispatch(to, 2, 1, 1);
+      vkCmdEndQuery(to, pool, 0);
+    }) == VK_SUCCESS);
+    numbers.fill(9);
+    CHECK(vkGetQueryPoolResults(client.device, pool, 0, 1, sizeof numbers, numbers.data(), 16,
+                                VK_QUERY_RESULT_WITH_AVAILABILITY_BIT) == VK_SUCCESS);
+    CHECK(numbers == (has_three ? std::array<uint32_t, 4>{0, 0, 8, 1} : std::array<uint32_t, 4>{0, 1, 9, 9}));
+    vkDestroyQueryPool(client.device, pool, nullptr);
+  }
+}
+
 TEST_CASE("synchronization2 orders commands, events and submissions", "[portable]") {
   const VkPhysicalDeviceTimelineSemaphoreFeatures timelines{
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES, nullptr, VK_TRUE};
