@@ -42,7 +42,8 @@ struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceAccelerationStructurePropertiesKHR,
                           VkPhysicalDeviceRayTracingPipelinePropertiesKHR,
                           VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV,
-                          VkPhysicalDeviceDescriptorBufferPropertiesEXT {
+                          VkPhysicalDeviceDescriptorBufferPropertiesEXT,
+                          VkPhysicalDeviceCustomBorderColorPropertiesEXT {
   // The structures of 1.1 rename these.
   VkShaderStageFlags supportedStages = 0;
   VkSubgroupFeatureFlags supportedOperations = 0;

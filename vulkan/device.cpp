@@ -65,12 +65,16 @@ void DestroyDevice(Device& device) {
   delete &device;
 }
 
-void GetDeviceQueue(Device& device, uint32_t, uint32_t index, VkQueue* out) {
-  *out = &device.queues.at(index);
+void GetDeviceQueue(Device& device, uint32_t family, uint32_t index, VkQueue* out) {
+  const uint64_t families = device.queues.size() / kQueues;
+  if (family >= families || index >= kQueues)
+    throw Refusal(fmt::format("queue {} of family {} is not there: {} families have {} queues each", index,
+                              family, families, kQueues));
+  *out = &device.queues[family * kQueues + index];
 }
 
 void GetDeviceQueue2(Device& device, const VkDeviceQueueInfo2* info, VkQueue* out) {
-  *out = &device.queues.at(info->queueIndex);
+  GetDeviceQueue(device, info->queueFamilyIndex, info->queueIndex, out);
 }
 
 void GetDeviceGroupPeerMemoryFeatures(Device&, uint32_t, uint32_t, uint32_t, VkPeerMemoryFeatureFlags* out) {

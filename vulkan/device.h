@@ -29,7 +29,8 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
         clock(of.gpu),
         recording(of.instance.settings, of.instance.messages, clock),
         gpu(of.gpu) {
-    for (uint32_t i = 0; i < glint::vulkan::kQueues; ++i) queues.emplace_back(*this);
+    const size_t families = glint::vulkan::queue_families(of.instance.settings.is_universal).size();
+    for (size_t i = 0; i < families * glint::vulkan::kQueues; ++i) queues.emplace_back(*this);
   }
   ~VkDevice_T() { glint::vulkan::used_by_process() -= allocated_bytes; }
   VkDevice_T(const VkDevice_T&) = delete;
@@ -70,5 +71,5 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   uint64_t frames = 0;           // that were presented
   uint64_t builds = 0;           // of acceleration structures
   bool is_lost = false;          // A launch did something that ends the device.
-  std::deque<VkQueue_T> queues;
+  std::deque<VkQueue_T> queues;  // of the first family, then of the next one
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <memory>
 
+#include "vulkan/chain.h"
 #include "vulkan/device.h"
 #include "vulkan/image.h"
 #include "vulkan/memory.h"
@@ -76,9 +77,16 @@ exec::Wrap wrap_of(VkSamplerAddressMode mode) {
   return exec::Wrap::ClampToEdge;
 }
 
-exec::Words border_of(VkBorderColor color) {
+exec::Words border_of(const VkSamplerCreateInfo& info) {
   constexpr uint32_t kOne = std::bit_cast<uint32_t>(1.0f);
-  switch (color) {
+  switch (info.borderColor) {
+    case VK_BORDER_COLOR_FLOAT_CUSTOM_EXT:
+    case VK_BORDER_COLOR_INT_CUSTOM_EXT: {
+      const auto* own = find_in_chain<VkSamplerCustomBorderColorCreateInfoEXT>(
+          &info, VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT);
+      if (!own) throw Refusal("a sampler with a border colour of its own does not name it");
+      return std::bit_cast<exec::Words>(own->customBorderColor);
+    }
     case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
       return {0, 0, 0, kOne};
     case VK_BORDER_COLOR_INT_OPAQUE_BLACK:
@@ -143,7 +151,7 @@ VkResult CreateSampler(Device& device, const VkSamplerCreateInfo* info, VkSample
   s.min = filter_of(info->minFilter == VK_FILTER_LINEAR);
   s.mip = filter_of(info->mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR);
   s.wrap = {wrap_of(info->addressModeU), wrap_of(info->addressModeV), wrap_of(info->addressModeW)};
-  s.border = border_of(info->borderColor);
+  s.border = border_of(*info);
   s.lod_bias = info->mipLodBias, s.min_lod = info->minLod, s.max_lod = info->maxLod;
   s.unnormalized = info->unnormalizedCoordinates;
   static_assert(int(exec::Comparison::Always) == VK_COMPARE_OP_ALWAYS);

@@ -255,6 +255,7 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
   p.storageTexelBufferOffsetAlignmentBytes = p.uniformTexelBufferOffsetAlignmentBytes = 16;
   p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
   p.minImportedHostPointerAlignment = kHostPointerAlignment;
+  p.maxCustomBorderColorSamplers = kManyDescriptors;
   return p;
 }
 

@@ -63,14 +63,18 @@ void GetPhysicalDeviceProperties2(PhysicalDevice& device, VkPhysicalDeviceProper
 
 void GetPhysicalDeviceQueueFamilyProperties(PhysicalDevice& device, uint32_t* count,
                                             VkQueueFamilyProperties* out) {
-  VkQueueFlags flags = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
-  if (device.instance.settings.is_universal) flags |= VK_QUEUE_GRAPHICS_BIT;
-  enumerate(1, count, out, [&](auto& to, uint32_t) { to = {flags, kQueues, 64, {1, 1, 1}}; });
+  const std::vector<VkQueueFlags> families = queue_families(device.instance.settings.is_universal);
+  enumerate(uint32_t(families.size()), count, out, [&](auto& to, uint32_t i) {
+    to = {families[i], kQueues, 64, {1, 1, 1}};
+  });
 }
 
 void GetPhysicalDeviceQueueFamilyProperties2(PhysicalDevice& device, uint32_t* count,
                                              VkQueueFamilyProperties2* out) {
-  GetPhysicalDeviceQueueFamilyProperties(device, count, out ? &out->queueFamilyProperties : nullptr);
+  const std::vector<VkQueueFlags> families = queue_families(device.instance.settings.is_universal);
+  enumerate(uint32_t(families.size()), count, out, [&](auto& to, uint32_t i) {
+    to.queueFamilyProperties = {families[i], kQueues, 64, {1, 1, 1}};
+  });
 }
 
 // Simulated memory is the host's, so every type can be mapped. Applications choose by the flags, and put what

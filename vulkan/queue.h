@@ -13,9 +13,17 @@
 
 namespace glint::vulkan {
 
-// Is the number of queues of the one family. Some frameworks want one for graphics, one for copies and one
-// for computing, and refuse a device with fewer.
+// Is the number of queues of a family. Some frameworks want one for graphics, one for copies and one for
+// computing, and refuse a device with fewer.
 inline constexpr uint32_t kQueues = 4;
+
+// Returns what each family of queues does. Some programs want a family for computing and one for copies that
+// do nothing else, as many GPUs with graphics have them.
+inline std::vector<VkQueueFlags> queue_families(bool is_universal) {
+  const VkQueueFlags copies = VK_QUEUE_TRANSFER_BIT, computes = copies | VK_QUEUE_COMPUTE_BIT;
+  if (!is_universal) return {computes};
+  return {computes | VK_QUEUE_GRAPHICS_BIT, computes, copies};
+}
 
 // Is one recorded command. It returns false when it has to wait for the host, and is then called again.
 using Command = std::function<bool(Queue&)>;

@@ -86,6 +86,41 @@ TEST_CASE("an anisotropic sampler takes the mean along the longer gradient") {
   CHECK(out.as<float>()[2] == 1.0f);
 }
 
+TEST_CASE("a sampler with a border colour of its own shows it outside of the image", "[portable]") {
+  VkPhysicalDeviceCustomBorderColorFeaturesEXT border{};
+  border.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CUSTOM_BORDER_COLOR_FEATURES_EXT;
+  border.customBorderColors = border.customBorderColorWithoutFormat = VK_TRUE;
+  Client::Options options;
+  options.extensions = {"VK_EXT_custom_border_color"}, options.more_features = &border;
+  Client client(options);
+  const BoundImage image = client.image(VK_FORMAT_R32G32B32A32_SFLOAT, {2, 2, 1});
+  const MappedBuffer out = client.buffer(16);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer O { vec4 v; };\n"
+      "layout(set = 0, binding = 1) uniform sampler2D picture;\n"
+      "void main() { v = textureLod(picture, vec2(-1), 0); }\n",
+      {{kStorage, kTexture}});
+  const VkSamplerCustomBorderColorCreateInfoEXT colour{
+      VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT,
+      nullptr,
+      {.float32 = {0.25f, 0.5f, 2, -3}},
+      VK_FORMAT_UNDEFINED};
+  VkSamplerCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, info.pNext = &colour;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  info.borderColor = VK_BORDER_COLOR_FLOAT_CUSTOM_EXT;
+  VkSampler sampler = nullptr;
+  check(vkCreateSampler(client.device, &info, nullptr, &sampler), "vkCreateSampler");
+  client.at_end([&client, sampler] { vkDestroySampler(client.device, sampler, nullptr); });
+  const VkDescriptorSet set =
+      client.set_with_image(pipeline.set_layout, out, kTexture, {sampler, image.view, kGeneral});
+  REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+  CHECK(out.as<float>()[0] == 0.25f);
+  CHECK(out.as<float>()[1] == 0.5f);
+  CHECK(out.as<float>()[2] == 2);
+  CHECK(out.as<float>()[3] == -3);
+}
+
 TEST_CASE("an image with blocks is filled by copies and fetched texel by texel", "[portable]") {
   Client client(with_textures());
   const VkExtent3D extent{10, 6, 1};

@@ -6,7 +6,9 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/support/catch.h"
 #include "tests/vulkan/client.h"
@@ -313,6 +315,36 @@ TEST_CASE("a device with a universal queue has formats of vertices", "[.][vertex
   VkFormatProperties can;
   vkGetPhysicalDeviceFormatProperties(client.physical, VK_FORMAT_D32_SFLOAT, &can);
   CHECK((can.bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) == 0);
+}
+
+// It needs GLINT_VK_QUEUE=universal.
+TEST_CASE("a universal device has families for computing and for copies alone", "[.][families]") {
+  Client client;
+  std::vector<VkQueueFamilyProperties> families(9);
+  auto count = uint32_t(families.size());
+  vkGetPhysicalDeviceQueueFamilyProperties(client.physical, &count, families.data());
+  REQUIRE(count == 3);
+  CHECK(families[0].queueFlags == (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT));
+  CHECK(families[1].queueFlags == (VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT));
+  CHECK(families[2].queueFlags == VK_QUEUE_TRANSFER_BIT);
+  const float priorities[4] = {1, 1, 1, 1};
+  std::vector<VkDeviceQueueCreateInfo> wanted;
+  for (uint32_t i = 0; i < count; ++i)
+    wanted.push_back({VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, i, 4, priorities});
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.queueCreateInfoCount = count, info.pQueueCreateInfos = wanted.data();
+  VkDevice device = nullptr;
+  REQUIRE(vkCreateDevice(client.physical, &info, nullptr, &device) == VK_SUCCESS);
+  std::set<VkQueue> queues;
+  for (uint32_t i = 0; i < 12; ++i) {
+    VkQueue queue = nullptr;
+    vkGetDeviceQueue(device, i / 4, i % 4, &queue);
+    queues.insert(queue);
+    CHECK(vkQueueWaitIdle(queue) == VK_SUCCESS);
+  }
+  CHECK(queues.size() == 12);
+  vkDestroyDevice(device, nullptr);
 }
 
 // It needs GLINT_VK_QUEUE=universal.

@@ -103,6 +103,10 @@ class Window(VulkanTest):
         self.assertEqual([(each["what"], each["count"]) for each in index["dropped"]], [("draws with graphics pipeline 1", 2)])
         self.assertEqual(index["commands"][-1]["dropped"], 2)
 
+    def test_a_universal_device_has_three_families_of_queues(self):
+        result = self.run_on_glint(CLIENT, "[families]", GLINT_VK_QUEUE="universal")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
     def test_a_universal_queue_has_formats_of_vertices(self):
         result = self.run_on_glint(CLIENT, "[vertex_formats]", GLINT_VK_QUEUE="universal")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
