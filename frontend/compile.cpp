@@ -38,7 +38,7 @@ std::optional<CompiledModule> find_program(ShaderCache& cache, const std::string
   ByteReader in(*bytes);
   CompiledModule out;
   in.get(out.simplified);
-  out.program = get_program(in);
+  in.get(out.program);
   out.program.name = name;
   return in.is_good() ? std::optional(std::move(out)) : std::nullopt;
 }
@@ -73,7 +73,7 @@ CompiledModule compile_module(const std::vector<uint32_t>& spirv, const std::str
   if (cache && warnings.messages().size() == warnings_before) {
     ByteWriter bytes;
     bytes.put(out.simplified);
-    put_program(bytes, out.program);
+    bytes.put(out.program);
     cache->store(key, bytes.take());
   }
   return out;

@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include "base/byte_stream.h"
 #include "base/regular_file.h"
 #include "frontend/cache.h"
 #include "frontend/compile.h"
@@ -16,7 +17,6 @@
 #include "frontend/glsl/messages.h"
 #include "frontend/glsl/newer_glsl.h"
 #include "frontend/glsl/token_count.h"
-#include "frontend/program_bytes.h"
 #include "frontend/spirv/glslang_repairs.h"
 #include "frontend/spirv/known_positions.h"
 #include "frontend/spirv/limits.h"
@@ -43,26 +43,15 @@ std::optional<std::vector<uint32_t>> find_words(ShaderCache& cache, const std::s
   const std::optional<std::string> bytes = cache.find(key);
   if (!bytes) return std::nullopt;
   ByteReader in(*bytes);
-  for (uint64_t left = in.take<uint64_t>(); left > 0; --left) {
-    const auto path = in.take<std::string>();
-    const auto is_there = in.take<uint8_t>() != 0;
-    const auto hash = in.take<uint64_t>();
-    const Lookup now = look_up(path, read_regular_file(path));
-    if (path.empty() || now.is_there != is_there || now.hash != hash) return std::nullopt;
-  }
+  const auto lookups = in.take<std::vector<Lookup>>();
   auto words = in.take<std::vector<uint32_t>>();
-  return in.is_good() ? std::optional(std::move(words)) : std::nullopt;
+  return in.is_good() && are_unchanged(lookups) ? std::optional(std::move(words)) : std::nullopt;
 }
 
 void store(ShaderCache& cache, const std::string& key, const std::vector<Lookup>& lookups,
            const std::vector<uint32_t>& words) {
   ByteWriter out;
-  out.put(uint64_t(lookups.size()));
-  for (const Lookup& each : lookups) {
-    out.put(each.path);
-    out.put(uint8_t(each.is_there));
-    out.put(each.hash);
-  }
+  out.put(lookups);
   out.put(words);
   cache.store(key, out.take());
 }

@@ -11,7 +11,6 @@
 #include "base/regular_file.h"
 #include "frontend/cache.h"
 #include "frontend/glsl/newer_glsl.h"
-#include "frontend/program_bytes.h"
 
 namespace glint::frontend {
 namespace {
@@ -39,10 +38,6 @@ void blank_version(std::string& text) {
 }
 
 }  // namespace
-
-Lookup look_up(const std::string& path, const std::optional<std::string>& text) {
-  return {path, text.has_value(), text ? content_hash(*text) : 0};
-}
 
 // A result that glslang may not use is followed by includeSystem for the same header, which says why.
 Includer::IncludeResult* Includer::includeLocal(const char* header, const char*, size_t depth) {
@@ -93,7 +88,7 @@ Includer::IncludeResult* Includer::load(const fs::path& path) {
     return nullptr;
   }
   std::optional<std::string> text = read_regular_file(path.string());
-  lookups_.push_back(look_up(path.string(), text));
+  lookups_.push_back(text ? found_at(path.string(), *text) : Lookup{path.string()});
   if (!text) return nullptr;
   blank_version(*text);
   say_extensions_anew(*text);

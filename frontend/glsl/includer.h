@@ -10,17 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/lookup.h"
 #include "isa/program.h"
 
 namespace glint::frontend {
-
-// Records a file that was looked for, and what was found.
-struct Lookup {
-  std::string path;
-  bool is_there = false;
-  uint64_t hash = 0;
-};
-Lookup look_up(const std::string& path, const std::optional<std::string>& text);
 
 // Looks for the file of `#include "..."` in the folder of the including file, then in the folders of the
 // files that led to it, the nearest first, and then in the include directories in order. `#include <...>`
