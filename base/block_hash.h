@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <vector>
+
+#include "base/parallel_ranges.h"
 
 namespace glint {
 
@@ -52,5 +55,20 @@ class BlockHash {
 
   std::array<uint64_t, kLanes> state_{1, 2, 3, 4};
 };
+
+// Returns a hash of bytes that are cut into parts of 8 MiB, which up to `threads` threads of the host hash
+// side by side. It is the same at any number of threads.
+inline uint64_t parted_hash(std::string_view bytes, uint32_t threads) {
+  constexpr size_t kPart = 8 << 20;
+  std::vector<uint64_t> parts((bytes.size() + kPart - 1) / kPart);
+  parallel_ranges(bytes.size(), kPart, threads, [&](size_t begin, size_t end) {
+    BlockHash part;
+    part.add(bytes.substr(begin, end - begin));
+    parts[begin / kPart] = part.first();
+  });
+  BlockHash whole;
+  whole.add({reinterpret_cast<const char*>(parts.data()), parts.size() * sizeof parts[0]});
+  return whole.first();
+}
 
 }  // namespace glint

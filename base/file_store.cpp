@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <initializer_list>
 #include <mutex>
 #include <unistd.h>
 #include <utility>
@@ -24,7 +23,7 @@ namespace fs = std::filesystem;
 // Stands at the beginning of a file. The key follows it, then the head of the value, and at a multiple of
 // kPage its rest and FileStore::kRestSlack zeros. A value without a rest ends with its head.
 struct Header {
-  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '3'};
+  char magic[8] = {'g', 'l', 'i', 'n', 't', 's', 'h', '4'};
   uint64_t key_bytes = 0, head_bytes = 0, rest_bytes = 0;
   uint64_t hash = 0;  // of all that follows the header, but for what fills the head's last page
 
@@ -39,9 +38,13 @@ struct Header {
   static constexpr uint64_t kPage = 4096;
 };
 
-uint64_t hash_of(std::initializer_list<std::string_view> parts) {
+// Returns Header::hash of a file, whose rest is given with the slack behind it.
+uint64_t hash_of(std::string_view key, std::string_view head, std::string_view rest, uint32_t threads) {
+  const uint64_t of_rest = parted_hash(rest, threads);
   BlockHash hash;
-  for (const std::string_view part : parts) hash.add(part);
+  for (const std::string_view part :
+       {key, head, std::string_view(reinterpret_cast<const char*>(&of_rest), sizeof of_rest)})
+    hash.add(part);
   return hash.first();
 }
 
@@ -96,10 +99,11 @@ std::string FileStore::file_of(const std::string& key) const {
 
 // Is what a file of the store says. The views lie in its pages.
 struct FileStore::Found {
-  std::string_view key, head;
-  Rest rest;
+  Header header;
+  std::string_view key;
+  Large value;
 
-  // Returns nullopt when the file is damaged.
+  // Returns nullopt when the file has another length than its header asks for.
   static std::optional<Found> in(Pages pages) {
     char* const bytes = static_cast<char*>(pages.get());
     const size_t size = pages.get_deleter().bytes;
@@ -110,15 +114,16 @@ struct FileStore::Found {
                           std::max({header.key_bytes, header.head_bytes, header.rest_bytes}) <= size &&
                           header.file_bytes() == size;
     if (!is_whole) return std::nullopt;
-    Found found{{bytes + sizeof header, header.key_bytes}, {bytes + header.head_at(), header.head_bytes}, {}};
-    std::string_view rest, slack;
-    if (header.rest_bytes) {
-      found.rest.data = bytes + header.rest_at(), found.rest.bytes = header.rest_bytes;
-      rest = {found.rest.data, header.rest_bytes}, slack = {rest.end(), kRestSlack};
-    }
-    found.rest.pages = std::move(pages);
-    if (hash_of({found.key, found.head, rest, slack}) != header.hash) return std::nullopt;
+    Found found{header, {bytes + sizeof header, header.key_bytes}, {}};
+    found.value.head = {bytes + header.head_at(), header.head_bytes};
+    if (header.rest_bytes) found.value.rest = bytes + header.rest_at(), found.value.bytes = header.rest_bytes;
+    found.value.pages = std::move(pages);
     return found;
+  }
+  // Returns the hash of what is there.
+  uint64_t hash(uint32_t threads) const {
+    const std::string_view with_slack(value.rest, value.bytes ? value.bytes + kRestSlack : 0);
+    return hash_of(key, value.head, with_slack, threads);
   }
 };
 
@@ -128,7 +133,7 @@ std::optional<FileStore::Found> FileStore::open(const std::string& given) {
   std::optional<Pages> pages = pages_of_file(path);
   if (!pages) return std::nullopt;
   std::optional<Found> found = Found::in(std::move(*pages));
-  if (!found) {
+  if (!found || found->hash(options_.threads) != found->header.hash) {
     ++damaged_;
     return std::nullopt;
   }
@@ -140,44 +145,59 @@ std::optional<FileStore::Found> FileStore::open(const std::string& given) {
 
 std::optional<std::string> FileStore::find(const std::string& key) {
   const std::optional<Found> found = open(key);
-  if (!found || found->rest.bytes) return std::nullopt;
-  return std::string(found->head);
+  if (!found || found->value.bytes) return std::nullopt;
+  return std::string(found->value.head);
 }
 
-std::optional<FileStore::Rest> FileStore::find(const std::string& key, std::span<char> head) {
+std::optional<FileStore::Large> FileStore::find_large(const std::string& key) {
   std::optional<Found> found = open(key);
-  if (!found || found->head.size() != head.size()) return std::nullopt;
-  std::copy(found->head.begin(), found->head.end(), head.begin());
-  return std::move(found->rest);
+  if (!found || !found->value.bytes) return std::nullopt;
+  return std::move(found->value);
 }
 
-void FileStore::store(const std::string& given, std::string_view head, std::string_view rest) {
+// Writes a file of the store. The pieces of its rest are not one block of memory, so their hash is taken from
+// the file. Returns false when the file cannot be written.
+bool FileStore::write(const std::string& path, const std::string& key, std::string_view head,
+                      std::span<const std::string_view> rest) const {
+  Header header;
+  header.key_bytes = key.size(), header.head_bytes = head.size();
+  for (const std::string_view piece : rest) header.rest_bytes += piece.size();
+  std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+  const auto put_header = [&] { out.write(reinterpret_cast<const char*>(&header), sizeof header); };
+  put_header();
+  out << key << head;
+  if (header.rest_bytes) {
+    out << std::string(header.rest_at() - header.head_at() - head.size(), 0);
+    for (const std::string_view piece : rest) out << piece;
+    out << std::string(kRestSlack, 0);
+  }
+  out.flush();
+  std::optional<Pages> pages = out ? pages_of_file(path) : std::nullopt;
+  const std::optional<Found> written = pages ? Found::in(std::move(*pages)) : std::nullopt;
+  if (!written) return false;
+  header.hash = written->hash(options_.threads);
+  out.seekp(0);
+  put_header();
+  out.flush();
+  return bool(out);
+}
+
+void FileStore::store(const std::string& given, std::string_view head,
+                      std::span<const std::string_view> rest) {
   if (options_.folder.empty()) return;
   std::error_code failed;
   fs::create_directories(options_.folder, failed);
-  const std::string path = file_of(given), key = options_.build + '\0' + given;
+  const std::string path = file_of(given);
   const std::string temporary =
       fmt::format("{}.{}.{:x}.{}", path, ::getpid(), reinterpret_cast<uintptr_t>(this), num_temporaries_++);
-  Header header;
-  header.key_bytes = key.size(), header.head_bytes = head.size(), header.rest_bytes = rest.size();
-  const std::string slack(rest.empty() ? 0 : kRestSlack, 0);
-  header.hash = hash_of({key, head, rest, slack});
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    out << key << head;
-    if (!rest.empty())
-      out << std::string(header.rest_at() - header.head_at() - head.size(), 0) << rest << slack;
-    out.flush();
-    if (!out) {
-      out.close();
-      fs::remove(temporary, failed);
-      return;
-    }
+  if (!write(temporary, options_.build + '\0' + given, head, rest)) {
+    fs::remove(temporary, failed);
+    return;
   }
+  const uint64_t bytes = fs::file_size(temporary, failed);
   fs::rename(temporary, path, failed);
   if (failed) fs::remove(temporary, failed);
-  sweep(header.file_bytes());
+  sweep(bytes);
 }
 
 // Limits the size of the folder. The folder is only searched from time to time, so it may exceed its limit by

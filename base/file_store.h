@@ -33,31 +33,37 @@ class FileStore {
     // This limits the size of all files of the folder with this ending. Above it, the files that were read
     // longest ago are removed.
     uint64_t max_bytes = 0;
+    uint32_t threads = 1;  // threads of the host that check large values side by side
   };
   explicit FileStore(Options options) : options_(std::move(options)) {}
 
   // Returns the value of a key, if there is one.
   std::optional<std::string> find(const std::string& key);
-  void store(const std::string& key, std::string_view value) { store(key, value, {}); }
+  void store(const std::string& key, std::string_view value) { store(key, value, std::string_view()); }
 
-  // Is a large part of a value, in pages that belong to this process.
-  struct Rest {
+  // Is a large value, in pages of its file, which belong to this process.
+  struct Large {
     Pages pages;
-    char* data = nullptr;  // in `pages`, at an address that is a multiple of 4096
-    uint64_t bytes = 0;    // kRestSlack more can be read behind them
+    std::string_view head;  // in `pages`
+    char* rest = nullptr;   // in `pages`, at an address that is a multiple of 4096
+    uint64_t bytes = 0;     // of the rest; kRestSlack more can be read behind them
   };
   static constexpr uint64_t kRestSlack = 128;
-  // Finds a large value without copying it: its first bytes go to `head`, and the rest stays in the pages of
-  // its file. When there is no such value, nullopt comes back and `head` means nothing.
-  std::optional<Rest> find(const std::string& key, std::span<char> head);
-  // Stores the value that consists of the two.
-  void store(const std::string& key, std::string_view head, std::string_view rest);
+  // Finds a large value without copying it.
+  std::optional<Large> find_large(const std::string& key);
+  // Stores a large value. The rest comes in pieces, which follow each other.
+  void store(const std::string& key, std::string_view head, std::string_view rest) {
+    store(key, head, std::span(&rest, 1));
+  }
+  void store(const std::string& key, std::string_view head, std::span<const std::string_view> rest);
   std::string file_of(const std::string& key) const;
   uint64_t damaged() const { return damaged_; }  // number of damaged files that find() met
 
  private:
   struct Found;
   std::optional<Found> open(const std::string& key);
+  bool write(const std::string& path, const std::string& key, std::string_view head,
+             std::span<const std::string_view> rest) const;
   void sweep(uint64_t written);
 
   const Options options_;

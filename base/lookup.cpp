@@ -24,7 +24,7 @@ Lookup found_at(const std::string& path, std::string_view bytes) {
 
 void LookupLog::add(const std::string& path) {
   const std::lock_guard lock(mutex_);
-  paths_.insert(path);
+  paths_.insert(std::filesystem::absolute(path).string());
 }
 
 std::optional<std::vector<Lookup>> LookupLog::lookups(uint32_t threads) const {

@@ -31,7 +31,8 @@ Lookup look_up(const std::string& path, uint32_t threads = 1);
 // Returns what look_up() would, of a file whose bytes are known.
 Lookup found_at(const std::string& path, std::string_view bytes);
 
-// Collects the paths at which somebody looks for files. Any number of threads may add to it.
+// Collects the paths at which somebody looks for files, and keeps them from the root on. Any number of
+// threads may add to it.
 class LookupLog {
  public:
   void add(const std::string& path);

@@ -47,6 +47,9 @@ class HostBlock {
     const auto at = reinterpret_cast<uintptr_t>(memory_.get());
     data_ = static_cast<std::byte*>(memory_.get()) + (kAlignment - at % kAlignment) % kAlignment;
   }
+  // Shows bytes that live as long as `owner` does. They are aligned, and end with a whole line of the host.
+  HostBlock(std::shared_ptr<void> owner, std::byte* data, uint64_t bytes)
+      : owner_(std::move(owner)), data_(data), size_(bytes) {}
   // Takes over pages that hold `bytes` bytes from `data` on, which is aligned, and at least 2 * kAlignment
   // more.
   HostBlock(Pages pages, std::byte* data, uint64_t bytes) : data_(data), size_(bytes) {
@@ -55,10 +58,12 @@ class HostBlock {
   }
   HostBlock(HostBlock&& other) noexcept
       : memory_(std::move(other.memory_)),
+        owner_(std::move(other.owner_)),
         data_(std::exchange(other.data_, nullptr)),
         size_(std::exchange(other.size_, 0)) {}
   HostBlock& operator=(HostBlock&& other) noexcept {
     memory_ = std::move(other.memory_);
+    owner_ = std::move(other.owner_);
     data_ = std::exchange(other.data_, nullptr);
     size_ = std::exchange(other.size_, 0);
     return *this;
@@ -82,6 +87,7 @@ class HostBlock {
   }
 
   Memory memory_;
+  std::shared_ptr<void> owner_;  // of bytes that several blocks share
   std::byte* data_ = nullptr;
   uint64_t size_ = 0;
 };

@@ -52,8 +52,12 @@ void give_back_memory() {
 #endif
 }
 
+std::string name_of_binding(uint32_t binding, const char* name) {
+  return fmt::format("binding {} ({})", binding, name);
+}
+
 template <class Value>
-void copy(const std::vector<Value>& from, Value* to, uint32_t threads) {
+void copy(std::span<const Value> from, Value* to, uint32_t threads) {
   constexpr size_t kRange = 65536;  // values that a thread copies at a time
   parallel_ranges(from.size(), kRange, threads, [&](size_t begin, size_t end) {
     std::copy(from.data() + begin, from.data() + end, to + begin);
@@ -142,16 +146,29 @@ Address SceneWorld::upload(const std::string& name, const void* data, uint64_t b
   return address;
 }
 
+Address SceneWorld::adopt(std::string name, const scenes::PackedContents& packed,
+                          std::span<std::byte> bytes) {
+  return memory_.adopt(std::move(name), mem::HostBlock(packed.memory, bytes.data(), bytes.size()));
+}
+
 void SceneWorld::bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count) {
   bound_.insert(binding);
   write_descriptor(world, {0, binding}, address_or_handle, bytes_or_count);
 }
 
 template <class Value>
+std::span<Value> SceneWorld::bind_packed(uint32_t binding, const char* name,
+                                         const scenes::PackedContents& packed, std::span<Value> values) {
+  if (values.empty()) return bind_new<Value>(binding, name, 0);
+  bind(binding, adopt(name_of_binding(binding, name), packed, std::as_writable_bytes(values)),
+       values.size_bytes());
+  return values;
+}
+
+template <class Value>
 std::span<Value> SceneWorld::bind_new(uint32_t binding, const char* name, uint64_t count) {
   const uint64_t bytes = count * sizeof(Value);
-  const Address address =
-      memory_.allocate(fmt::format("binding {} ({})", binding, name), std::max<uint64_t>(bytes, 4));
+  const Address address = memory_.allocate(name_of_binding(binding, name), std::max<uint64_t>(bytes, 4));
   bind(binding, address, bytes);
   return memory_.view<Value>(address, count);
 }
@@ -161,21 +178,24 @@ void SceneWorld::upload_geometry(const RenderJob& job, scenes::Scene* drain) {
   std::vector<std::array<uint32_t, 2>> offsets;  // first index and first vertex of each model
   std::vector<scenes::Vec4> spheres;
   uint64_t num_vertices = 0, num_indices = 0;
-  for (const Model& model : scene.models) {
+  for (size_t i = 0; i < scene.models.size(); ++i) {
     offsets.push_back({uint32_t(num_indices), uint32_t(num_vertices)});
-    spheres.push_back(sphere_of(model));
-    num_vertices += model.vertices.size(), num_indices += model.indices.size();
+    spheres.push_back(sphere_of(scene.models[i]));
+    num_vertices += scene.vertices_of(i).size(), num_indices += scene.indices_of(i).size();
   }
-  const std::span vertices = bind_new<scenes::Vertex>(kVertices, "vertices", num_vertices);
-  const std::span indices = bind_new<uint32_t>(kIndices, "indices", num_indices);
+  const scenes::PackedContents* const packed = drain ? drain->packed.get() : nullptr;
+  const std::span vertices = packed ? bind_packed(kVertices, "vertices", *packed, packed->vertices)
+                                    : bind_new<scenes::Vertex>(kVertices, "vertices", num_vertices);
+  const std::span indices = packed ? bind_packed(kIndices, "indices", *packed, packed->indices)
+                                   : bind_new<uint32_t>(kIndices, "indices", num_indices);
   const uint32_t threads = host_threads(job.threads);
   for (size_t i = 0; i < scene.models.size(); ++i) {
-    const Model& model = scene.models[i];
     const auto [first_index, first_vertex] = offsets[i];
-    uploaded_.push_back({vertices.subspan(first_vertex, model.vertices.size()),
-                         indices.subspan(first_index, model.indices.size())});
-    copy(model.vertices, vertices.data() + first_vertex, threads);
-    copy(model.indices, indices.data() + first_index, threads);
+    uploaded_.push_back({vertices.subspan(first_vertex, scene.vertices_of(i).size()),
+                         indices.subspan(first_index, scene.indices_of(i).size())});
+    if (packed) continue;
+    copy(scene.vertices_of(i), vertices.data() + first_vertex, threads);
+    copy(scene.indices_of(i), indices.data() + first_index, threads);
     if (!drain) continue;
     release(drain->models[i].vertices);
     release(drain->models[i].indices);
@@ -192,33 +212,38 @@ void SceneWorld::upload_geometry(const RenderJob& job, scenes::Scene* drain) {
 }
 
 void SceneWorld::upload_images(const RenderJob& job, scenes::Scene* drain) {
-  auto add = [&](std::string name, exec::ImageView::Format format, uint32_t width, uint32_t height,
-                 const void* texels) {
-    const uint64_t bytes = uint64_t(width) * height * exec::info_of(format).bytes;
-    const Address base = memory_.allocate(name, bytes);
-    if (texels) memory_.write(base, texels, bytes);
+  using Format = exec::ImageView::Format;
+  const auto add = [&](std::string name, Format format, uint32_t width, uint32_t height, Address base) {
     world.images.push_back({format, width, height, base, std::move(name)});
     return uint64_t(world.images.size() - 1);
   };
-  using Format = exec::ImageView::Format;
-  const uint32_t whole_width = job.frame.whole_width(), whole_height = job.frame.whole_height();
-  bind(kAccumulationImage,
-       add("binding 1 (accumulation)", Format::Rgba32Float, whole_width, whole_height, nullptr), 1);
-  bind(kPictureImage, add("binding 2 (picture)", Format::Rgba32Float, whole_width, whole_height, nullptr), 1);
-  // A scene without textures binds one white texel, as the original application does.
-  static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
+  const uint32_t width = job.frame.whole_width(), height = job.frame.whole_height();
+  const auto add_output = [&](uint32_t binding, const char* what) {
+    const std::string name = name_of_binding(binding, what);
+    const uint64_t bytes = uint64_t{width} * height * exec::info_of(Format::Rgba32Float).bytes;
+    bind(binding, add(name, Format::Rgba32Float, width, height, memory_.allocate(name, bytes)), 1);
+  };
+  add_output(kAccumulationImage, "accumulation");
+  add_output(kPictureImage, "picture");
+  const scenes::PackedContents* const packed = drain ? drain->packed.get() : nullptr;
   const uint64_t first = world.images.size();
   for (size_t i = 0; i < job.scene.textures.size(); ++i) {
     const scenes::Texture& texture = job.scene.textures[i];
-    add("texture " + texture.name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width,
-        texture.height, texture.rgba.data());
+    const std::string name = "texture " + texture.name;
+    const std::span texels = job.scene.texels_of(i);
+    const Address base = packed ? adopt(name, *packed, std::as_writable_bytes(packed->texels[i]))
+                                : upload(name, texels.data(), texels.size());
+    add(name, texture.srgb ? Format::Rgba8Srgb : Format::Rgba8Unorm, texture.width, texture.height, base);
     if (texture.repeat) world.images.back().sampler.wrap.fill(exec::Wrap::Repeat);
     const exec::ImageView& image = world.images.back();
     alpha_.push_back(
         {memory_.view<uint8_t>(image.base, image.bytes()), image.width, image.height, image.sampler.wrap[0]});
     if (drain) release(drain->textures[i].rgba);
   }
-  if (job.scene.textures.empty()) add("texture (white)", Format::Rgba8Unorm, 1, 1, kWhite);
+  // A scene without textures binds one white texel, as the original application does.
+  static constexpr uint8_t kWhite[4] = {255, 255, 255, 255};
+  if (job.scene.textures.empty())
+    add("texture (white)", Format::Rgba8Unorm, 1, 1, upload("texture (white)", kWhite, sizeof kWhite));
   bind(kTextures, first, world.images.size() - first);
 }
 

@@ -1,6 +1,7 @@
 // Puts a scene into simulated memory as the shaders' descriptor set 0, with its pipeline and binding table.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <set>
@@ -135,6 +136,11 @@ class SceneWorld {
   void bind(uint32_t binding, uint64_t address_or_handle, uint64_t bytes_or_count);
   template <class Value>
   std::span<Value> bind_new(uint32_t binding, const char* name, uint64_t count);  // a buffer of zeros
+  // Make contents of a packed scene a part of simulated memory, as they are.
+  Address adopt(std::string name, const scenes::PackedContents& packed, std::span<std::byte> bytes);
+  template <class Value>
+  std::span<Value> bind_packed(uint32_t binding, const char* name, const scenes::PackedContents& packed,
+                               std::span<Value> values);
   Address upload(const std::string& name, const void* data, uint64_t bytes);
 
   mem::AddressSpace memory_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/structure_cache.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
 #include <optional>
@@ -66,9 +67,11 @@ rt::EncodedStructure StructureCache::encode(const std::string& name, const rt::B
   rt::EncodedStructure out;
   const std::span<char> info(reinterpret_cast<char*>(&out.info), sizeof out.info);
   static_assert(FileStore::kRestSlack >= 2 * mem::HostBlock::kAlignment);
-  if (std::optional<FileStore::Rest> found = files_.find(key, info)) {
+  if (std::optional<FileStore::Large> found = files_.find_large(key);
+      found && found->head.size() == info.size()) {
+    std::copy(found->head.begin(), found->head.end(), info.begin());
     out.bytes =
-        mem::HostBlock(std::move(found->pages), reinterpret_cast<std::byte*>(found->data), found->bytes);
+        mem::HostBlock(std::move(found->pages), reinterpret_cast<std::byte*>(found->rest), found->bytes);
     count(&Counts::found);
     return out;
   }

@@ -18,6 +18,7 @@
 #include "scenes/instancing.h"
 #include "scenes/lumibench/builders.h"
 #include "scenes/motions/built_in.h"
+#include "scenes/scene_store.h"
 
 namespace glint::scenes {
 namespace {
@@ -98,8 +99,8 @@ const std::vector<Entry>& all_scenes() {
   return scenes;
 }
 
-uint64_t triangles_of(const Model& model) {
-  return model.is_procedural() ? 0 : model.indices.size() / 3;
+uint64_t triangles_of(const Scene& scene, size_t model) {
+  return scene.models[model].is_procedural() ? 0 : scene.indices_of(model).size() / 3;
 }
 
 std::string upper_case(std::string text) {
@@ -154,9 +155,25 @@ Scene build_scene(const Entry& entry, const LoadOptions& options) {
 
 }  // namespace
 
+std::span<const Vertex> Scene::vertices_of(size_t model) const {
+  if (!packed) return models[model].vertices;
+  const PackedContents::Range& range = packed->models[model];
+  return packed->vertices.subspan(range.first_vertex, range.vertices);
+}
+
+std::span<const uint32_t> Scene::indices_of(size_t model) const {
+  if (!packed) return models[model].indices;
+  const PackedContents::Range& range = packed->models[model];
+  return packed->indices.subspan(range.first_index, range.indices);
+}
+
+std::span<const uint8_t> Scene::texels_of(size_t texture) const {
+  return packed ? std::span<const uint8_t>(packed->texels[texture]) : textures[texture].rgba;
+}
+
 uint64_t Scene::stored_triangles() const {
   uint64_t count = 0;
-  for (const Model& model : models) count += triangles_of(model);
+  for (size_t i = 0; i < models.size(); ++i) count += triangles_of(*this, i);
   return count;
 }
 
@@ -171,7 +188,7 @@ float diagonal(const Scene& scene) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   Vec3 lower{inf, inf, inf}, upper = -lower;
   for (const Instance& instance : instances_of(scene))
-    for (const Vertex& vertex : scene.models[instance.model].vertices) {
+    for (const Vertex& vertex : scene.vertices_of(instance.model)) {
       const Vec3 place = Vec4(vertex.position, 1.0f) * instance.to_world;  // GLM's columns are the rows
       lower = glm::min(lower, place);
       upper = glm::max(upper, place);
@@ -181,7 +198,7 @@ float diagonal(const Scene& scene) {
 
 uint64_t Scene::triangles() const {
   uint64_t count = 0;
-  for (const Instance& instance : instances_of(*this)) count += triangles_of(models[instance.model]);
+  for (const Instance& instance : instances_of(*this)) count += triangles_of(*this, instance.model);
   return count;
 }
 
@@ -220,6 +237,13 @@ void name_materials(Scene& scene) {
       scene.material_names[i] = users[i]->name;
 }
 
+// Names a scene with all that it depends on besides the program's build and the contents of files.
+std::string kept_key(const std::string& name, const Entry* entry, bool instancing) {
+  const std::string what =
+      entry ? fmt::format("built-in {}", entry->name) : "file " + std::filesystem::absolute(name).string();
+  return what + (instancing ? " instancing" : "");
+}
+
 }  // namespace
 
 bool has_original(const std::string& name, const std::string& assets) {
@@ -231,9 +255,18 @@ Scene load_scene(const std::string& name, const LoadOptions& given) {
   LoadOptions options = given;
   options.threads = host_threads(given.threads);
   const Entry* entry = names_scene_file(name) ? nullptr : &entry_of(name);
-  Scene scene = entry ? build_scene(*entry, options) : load_scene_file(name, options);
-  name_materials(scene);
-  if (options.instancing) share_copies(scene);
+  const auto load = [&](LookupLog* log) {
+    options.log = log;
+    Scene scene = entry ? build_scene(*entry, options) : load_scene_file(name, options);
+    name_materials(scene);
+    if (options.instancing) share_copies(scene);
+    return scene;
+  };
+  // What moves gets other vertices. Builders of originals do not say which files they have looked for.
+  const bool is_kept =
+      options.store && !options.moving && (!entry || options.assets.empty() || entry->originals.empty());
+  if (is_kept) return options.store->find_or_load(kept_key(name, entry, options.instancing), load);
+  Scene scene = load(given.log);
   if (options.moving && entry && entry->move) scene.motion = entry->move(scene);
   return scene;
 }

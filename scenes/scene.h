@@ -8,10 +8,17 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+namespace glint {
+class LookupLog;  // base/lookup.h
+}
+
 namespace glint::scenes {
+
+class SceneStore;  // scenes/scene_store.h
 
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
@@ -65,6 +72,24 @@ struct Texture {
   bool repeat = false;  // coordinates outside of 0 to 1 repeat the picture instead of clamping to its edge
 };
 
+// Holds the vertices, indices and texels of a scene in one block of memory: those of all models one after
+// another, as the renderer's buffers have them, and then each texture. Models and textures have empty vectors
+// then.
+struct PackedContents {
+  struct Range {
+    uint64_t vertices = 0, indices = 0;  // numbers of the model
+    uint64_t first_vertex = 0, first_index = 0;
+  };
+  std::vector<Range> models;
+  std::span<Vertex> vertices;
+  std::span<uint32_t> indices;
+  std::vector<std::span<uint8_t>> texels;  // of each texture
+  // Owns the block. Vertices, indices and each texture begin at a multiple of 64 bytes, and
+  // FileStore::kRestSlack bytes more can be read behind the last of them.
+  std::shared_ptr<void> memory;
+  std::vector<uint64_t> hashes;  // of the contents, as Scene::hash() takes them
+};
+
 // Holds a 3x4 matrix that moves a point of a model into the world: affine[r] is row r, and affine[r][3] is
 // the translation. GLM's columns are these rows, so the 12 floats lie in the order of VkTransformMatrixKHR.
 using Affine = glm::mat3x4;
@@ -99,11 +124,16 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<std::string> material_names;  // of each material; empty where nothing names it
   std::vector<Texture> textures;
+  std::shared_ptr<PackedContents> packed;  // null: models and textures have their contents themselves
   Camera camera;
   bool alpha_test = false;               // Triangle hit groups have the any-hit alpha shader.
   std::shared_ptr<const Motion> motion;  // what moves by itself; null: nothing
   uint64_t original_triangles = 0;  // triangles of the application's complete scene; 0: it has no such scene
-  uint64_t triangles() const;       // triangles in the world, with those of each instance
+  // Return the contents of a model or a texture, wherever they are.
+  std::span<const Vertex> vertices_of(size_t model) const;
+  std::span<const uint32_t> indices_of(size_t model) const;
+  std::span<const uint8_t> texels_of(size_t texture) const;
+  uint64_t triangles() const;         // triangles in the world, with those of each instance
   uint64_t stored_triangles() const;  // triangles of the models, each counted once
   double fraction() const;            // share of the original's triangles; 1 when there is no original
   uint64_t procedurals() const;
@@ -131,6 +161,10 @@ struct LoadOptions {
   // pose at time 0.
   bool moving = false;
   std::string animation = {};  // name or number of the glTF animation to play; empty: the first one
+  // A scene that was loaded before is taken from here, and is packed then (Scene::packed). Null: it is loaded
+  // each time.
+  SceneStore* store = nullptr;
+  LookupLog* log = nullptr;  // It gets the paths of all files that are read or looked for, unless it is null.
 };
 
 struct SceneInfo {

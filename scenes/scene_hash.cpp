@@ -1,12 +1,14 @@
 // Hashes the parts of a scene on several threads, and the hashes of the parts in the scene's order.
 // SPDX-License-Identifier: Apache-2.0
+#include "scenes/scene_hash.h"
+
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <vector>
 
 #include "base/host_threads.h"
 #include "base/parallel_ranges.h"
-#include "scenes/scene.h"
 
 namespace glint::scenes {
 namespace {
@@ -37,20 +39,18 @@ class ContentHash {
 
 constexpr size_t kPart = 1 << 16;  // vertices, indices or bytes of texels that one thread hashes at a time
 
-// Names a range of one of the three: vertices of a model, indices of a model, or bytes of a texture.
+// Is a range of one of the three: vertices of a model, indices of a model, or texels of a texture.
 struct Part {
-  const Model* vertices = nullptr;
-  const Model* indices = nullptr;
-  const Texture* texels = nullptr;
-  size_t begin = 0, end = 0;
+  std::span<const Vertex> vertices = {};
+  std::span<const uint32_t> indices = {};
+  std::span<const uint8_t> rgba = {};
 };
 
-// Appends `part` once for each range of `count` things.
-void cut(std::vector<Part>& parts, Part part, size_t count) {
-  for (size_t begin = 0; begin < count; begin += kPart) {
-    part.begin = begin, part.end = std::min(count, begin + kPart);
-    parts.push_back(part);
-  }
+// Appends a part for each range of `values`, which `part` makes of the range.
+template <class Value, class MakePart>
+void cut(std::vector<Part>& parts, std::span<const Value> values, const MakePart& part) {
+  for (size_t begin = 0; begin < values.size(); begin += kPart)
+    parts.push_back(part(values.subspan(begin, std::min(kPart, values.size() - begin))));
 }
 
 void add(ContentHash& hash, const Vertex& v) {
@@ -61,28 +61,26 @@ void add(ContentHash& hash, const Vertex& v) {
   hash.add(uint64_t(uint32_t(v.material)));
 }
 
-uint32_t texel(const std::vector<uint8_t>& rgba, size_t at) {
+uint32_t texel(std::span<const uint8_t> rgba, size_t at) {
   const uint8_t* const b = &rgba[at];
   return uint32_t{b[0]} | uint32_t{b[1]} << 8 | uint32_t{b[2]} << 16 | uint32_t{b[3]} << 24;
 }
 
 uint64_t hash_of(const Part& part) {
   ContentHash hash;
-  if (part.vertices)
-    for (size_t i = part.begin; i < part.end; ++i) add(hash, part.vertices->vertices[i]);
-  if (part.indices)
-    for (size_t i = part.begin; i < part.end; i += 2)
-      hash.add(part.indices->indices[i], i + 1 < part.end ? part.indices->indices[i + 1] : 0);
-  if (part.texels)
-    for (size_t i = part.begin; i < part.end; i += 8)
-      hash.add(texel(part.texels->rgba, i), i + 4 < part.end ? texel(part.texels->rgba, i + 4) : 0);
+  for (const Vertex& vertex : part.vertices) add(hash, vertex);
+  for (size_t i = 0; i < part.indices.size(); i += 2)
+    hash.add(part.indices[i], i + 1 < part.indices.size() ? part.indices[i + 1] : 0);
+  for (size_t i = 0; i < part.rgba.size(); i += 8)
+    hash.add(texel(part.rgba, i), i + 4 < part.rgba.size() ? texel(part.rgba, i + 4) : 0);
   return hash.result();
 }
 
 // Adds what is not in the parts of a model or texture.
-void add(ContentHash& hash, const Model& model) {
-  hash.add(uint64_t{model.vertices.size()});
-  hash.add(uint64_t{model.indices.size()});
+void add_model(ContentHash& hash, const Scene& scene, size_t number) {
+  const Model& model = scene.models[number];
+  hash.add(uint64_t{scene.vertices_of(number).size()});
+  hash.add(uint64_t{scene.indices_of(number).size()});
   hash.add(model.center);
   hash.add(model.radius);
 }
@@ -100,15 +98,26 @@ void add(ContentHash& hash, const Camera& c) {
 
 }  // namespace
 
+std::vector<uint64_t> content_hashes(const Scene& scene, uint32_t threads) {
+  if (scene.packed) return scene.packed->hashes;
+  std::vector<Part> parts;
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    cut(parts, scene.vertices_of(i), [](std::span<const Vertex> range) { return Part{.vertices = range}; });
+    cut(parts, scene.indices_of(i), [](std::span<const uint32_t> range) { return Part{.indices = range}; });
+  }
+  for (size_t i = 0; i < scene.textures.size(); ++i)
+    cut(parts, scene.texels_of(i), [](std::span<const uint8_t> range) { return Part{.rgba = range}; });
+  std::vector<uint64_t> hashes(parts.size());
+  parallel_ranges(parts.size(), 4, host_threads(threads), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) hashes[i] = hash_of(parts[i]);
+  });
+  return hashes;
+}
+
 uint64_t Scene::hash(uint32_t threads) const {
   ContentHash content;
-  std::vector<Part> parts;
   content.add(uint64_t{models.size()});
-  for (const Model& model : models) {
-    add(content, model);
-    cut(parts, {.vertices = &model}, model.vertices.size());
-    cut(parts, {.indices = &model}, model.indices.size());
-  }
+  for (size_t i = 0; i < models.size(); ++i) add_model(content, *this, i);
   for (const Instance& instance : instances) {
     content.add(uint64_t{instance.model});
     content.add(instance.to_world);
@@ -122,18 +131,10 @@ uint64_t Scene::hash(uint32_t threads) const {
     content.add(uint64_t(m.model));
   }
   content.add(uint64_t{textures.size()});
-  for (const Texture& texture : textures) {
-    add(content, texture);
-    cut(parts, {.texels = &texture}, texture.rgba.size());
-  }
+  for (const Texture& texture : textures) add(content, texture);
   add(content, camera);
   content.add(uint64_t{alpha_test});
-
-  std::vector<uint64_t> hashes(parts.size());
-  parallel_ranges(parts.size(), 4, host_threads(threads), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) hashes[i] = hash_of(parts[i]);
-  });
-  for (const uint64_t hash : hashes) content.add(hash);
+  for (const uint64_t hash : content_hashes(*this, threads)) content.add(hash);
   return content.result();
 }
 

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/lookup.h"
 #include "base/parallel_ranges.h"
 #include "base/regular_file.h"
 #include "pictures/decode.h"
@@ -242,7 +243,14 @@ std::string note_of(const tinygltf::Model& file, bool moving) {
   return note;
 }
 
-bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
+// Notes that the library looks for a file. `log` is what it got for its functions.
+void note(void* log, const std::string& path) {
+  if (log) static_cast<LookupLog*>(log)->add(path);
+}
+
+bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
+                     void* log) {
+  note(log, path);
   std::optional<std::vector<unsigned char>> read = read_regular_bytes(path);
   if (!read) {
     *error += path + " is no file that can be read";
@@ -252,17 +260,18 @@ bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, cons
   return true;
 }
 
-bool is_regular_file(const std::string& path, void*) {
+bool is_regular_file(const std::string& path, void* log) {
+  note(log, path);
   std::error_code failed;
   return std::filesystem::is_regular_file(path, failed);
 }
 
-tinygltf::Model read_file(const std::string& path, uint32_t threads) {
+tinygltf::Model read_file(const std::string& path, uint32_t threads, LookupLog* log) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_bytes, nullptr);
   // The library's own functions wait for the writer when a file names a pipe.
   loader.SetFsCallbacks(
-      {is_regular_file, tinygltf::ExpandFilePath, read_whole_file, tinygltf::WriteWholeFile, nullptr});
+      {is_regular_file, tinygltf::ExpandFilePath, read_whole_file, tinygltf::WriteWholeFile, log});
   tinygltf::Model file;
   std::string error, warning;
   bool good = false;
@@ -286,7 +295,7 @@ tinygltf::Model read_file(const std::string& path, uint32_t threads) {
 }  // namespace
 
 Scene load_gltf(const std::string& path, const LoadOptions& options) {
-  const tinygltf::Model file = read_file(path, options.threads);
+  const tinygltf::Model file = read_file(path, options.threads, options.log);
   Scene scene;
   Nodes nodes(scene, file, path, options);
   const int number = std::max(0, file.defaultScene);

@@ -31,12 +31,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Finds material libraries beside the file that names them, and notes their paths.
+class LibraryReader final : public tinyobj::MaterialReader {
+ public:
+  LibraryReader(const fs::path& folder, LookupLog* log)
+      : folder_(folder.empty() ? "" : folder.string() + '/'), log_(log) {}
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* numbers, std::string* warning, std::string* error) override {
+    if (log_) log_->add(folder_ + name);
+    const std::optional<std::string> text = read_regular_file(folder_ + name);
+    if (!text) {
+      *warning += fmt::format("{}{} was not found", folder_, name);
+      return false;
+    }
+    std::istringstream stream(*text);
+    tinyobj::LoadMtl(numbers, materials, &stream, warning, error);
+    return true;
+  }
+
+ private:
+  const std::string folder_;
+  LookupLog* const log_;
+};
+
 // Reads the materials of a text whose lines about materials are given. Returns the library's materials and,
 // in `material_of`, the number of the material that holds before the first line and after each one. The
 // material library of a file in parts has the file's name; another file names its own, relative to its
 // folder.
 std::vector<tinyobj::material_t> read_materials(std::span<const ObjChunk> chunks, const std::string& path,
-                                                const std::vector<std::string>& parts,
+                                                const std::vector<std::string>& parts, LookupLog* log,
                                                 std::vector<int32_t>& material_of) {
   // The library reads these lines with one face after each, which then has the material.
   std::string text = "v 0 0 0\nf 1 1 1\n";
@@ -48,9 +71,8 @@ std::vector<tinyobj::material_t> read_materials(std::span<const ObjChunk> chunks
   std::istringstream stream(text);
   std::istringstream own(
       parts.empty() ? "" : read_regular_file(fs::path(path).replace_extension(".mtl").string()).value_or(""));
-  const fs::path folder = fs::path(path).parent_path();
   tinyobj::MaterialStreamReader of_parts(own);
-  tinyobj::MaterialFileReader of_file(folder.empty() ? "" : folder.string() + '/');
+  LibraryReader of_file(fs::path(path).parent_path(), log);
   tinyobj::MaterialReader& library =
       parts.empty() ? static_cast<tinyobj::MaterialReader&>(of_file) : of_parts;
   tinyobj::attrib_t attributes;
@@ -110,6 +132,8 @@ void add_textures(std::span<Material> materials, const std::vector<tinyobj::mate
     if (materials[i].diffuse == Vec4{0, 0, 0, 1}) materials[i].diffuse = {1, 1, 1, 1};
     paths.push_back((folder / name).string());
   }
+  if (reading.log)
+    for (const std::string& texture : paths) reading.log->add(texture);
   std::vector<Texture> textures = load_textures(paths, reading.threads);
   std::move(textures.begin(), textures.end(), std::back_inserter(*reading.textures));
 }
@@ -149,7 +173,8 @@ Model load_obj(const std::string& path, std::vector<Material>& materials, const 
       checked_chunks(text->view(), path, reading.threads, reading.chunk_bytes);
 
   std::vector<int32_t> material_of_line;
-  const std::vector<tinyobj::material_t> read = read_materials(chunks, path, parts, material_of_line);
+  const std::vector<tinyobj::material_t> read =
+      read_materials(chunks, path, parts, reading.log, material_of_line);
   for (int32_t& material : material_of_line) material += int32_t(materials.size());
   const size_t first = materials.size();
   for (const tinyobj::material_t& m : read) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/lookup.h"
 #include "scenes/scene.h"
 
 namespace glint::scenes {
@@ -18,6 +19,7 @@ struct ObjReading {
   std::vector<std::string>* names = nullptr;  // gets the materials' names in the file, unless it is null
   uint32_t threads = 1;                       // threads of the host; they do not show in the model
   size_t chunk_bytes = 4 << 20;               // text that a thread reads at a time; does not show either
+  LookupLog* log = nullptr;                   // gets the paths of libraries and textures, unless it is null
 };
 
 // Loads one file as one model and appends its materials to `materials`. The rules are:

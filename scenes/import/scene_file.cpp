@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/diagnostics.h"
+#include "base/lookup.h"
 #include "scenes/import/asset_folder.h"
 #include "scenes/import/obj_loader.h"
 #include "scenes/mesh.h"
@@ -42,11 +43,13 @@ Camera camera_around(const Bounds& box) {
   return camera;
 }
 
-Scene load_obj_scene(const std::string& path, uint32_t threads) {
+Scene load_obj_scene(const std::string& path, const LoadOptions& options) {
   Scene scene;
-  scene.models.push_back(
-      load_obj(path, scene.materials,
-               {.textures = &scene.textures, .names = &scene.material_names, .threads = threads}));
+  scene.models.push_back(load_obj(path, scene.materials,
+                                  {.textures = &scene.textures,
+                                   .names = &scene.material_names,
+                                   .threads = options.threads,
+                                   .log = options.log}));
   if (scene.models[0].indices.empty()) throw UserError({path}, "this file has no triangles");
   scene.models[0].name = fs::path(path).stem().string();
   return scene;
@@ -97,7 +100,8 @@ Bounds world_bounds(const Scene& scene) {
 Scene load_scene_file(const std::string& path, const LoadOptions& options) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) throw UserError({path}, "there is no such file");
-  Scene scene = ending_of(path) == ".obj" ? load_obj_scene(path, options.threads) : load_gltf(path, options);
+  if (options.log) options.log->add(path);
+  Scene scene = ending_of(path) == ".obj" ? load_obj_scene(path, options) : load_gltf(path, options);
   scene.name = fs::path(path).stem().string();
   scene.form = "file";
   if (scene.camera.eye == scene.camera.target) {

@@ -1,5 +1,5 @@
-// Adds the options for include folders, macros and contraction, and opens the caches of shaders and
-// structures.
+// Adds the options for include folders, macros and contraction, and opens the caches of shaders, structures
+// and scenes.
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/glint/options/shader_options.h"
 
@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
+#include "base/host_threads.h"
 
 namespace glint::app {
 namespace {
@@ -68,8 +69,9 @@ void add_shader_options(Command command, ShaderOptions& options) {
   add_source_options(command, options);
   command.add_flag("--contract", options.contract,
                    "Compile a * b + c of GLSL to one fma, as drivers do, except where it is `precise`");
-  command.add_flag("--no-cache", options.no_cache,
-                   "Compile shaders and build structures again, and keep none of them in the caches");
+  command.add_flag(
+      "--no-cache", options.no_cache,
+      "Compile shaders, make scenes and build structures again, and keep none of them in the caches");
 }
 
 frontend::GlslOptions glsl_options(const ShaderOptions& options, frontend::ShaderCache* cache) {
@@ -99,6 +101,14 @@ std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptio
   if (options.no_cache || build.empty()) return nullptr;
   return std::make_unique<pipeline::StructureCache>(
       pipeline::StructureCache::Options{cache_folder("structures"), build + identity_of(plugins)});
+}
+
+std::unique_ptr<scenes::SceneStore> open_scene_store(const ShaderOptions& options, uint32_t threads) {
+  const std::string build = build_id();
+  if (options.no_cache || build.empty()) return nullptr;
+  scenes::SceneStore::Options store{cache_folder("scenes"), build};
+  store.threads = host_threads(threads);
+  return std::make_unique<scenes::SceneStore>(store);
 }
 
 }  // namespace glint::app

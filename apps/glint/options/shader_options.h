@@ -1,6 +1,7 @@
 // Holds the options for compiling shaders, which are the same for every subcommand that does so.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "frontend/cache.h"
 #include "frontend/compile.h"
 #include "pipeline/structure_cache.h"
+#include "scenes/scene_store.h"
 
 namespace glint::app {
 
@@ -33,5 +35,8 @@ std::unique_ptr<frontend::ShaderCache> open_shader_cache(const ShaderOptions& op
 // A plugin may bring a node format, so structures of other plugins are not found.
 std::unique_ptr<pipeline::StructureCache> open_structure_cache(const ShaderOptions& options,
                                                                const std::vector<Plugin>& plugins);
+// Opens the store of scenes in the folder `scenes` beside it. Returns null with --no-cache. Up to `threads`
+// threads of the host work for it (0: one for each processor).
+std::unique_ptr<scenes::SceneStore> open_scene_store(const ShaderOptions& options, uint32_t threads);
 
 }  // namespace glint::app

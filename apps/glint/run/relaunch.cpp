@@ -49,8 +49,9 @@ pipeline::RenderJob job_of(const Session& session, const RelaunchOptions& option
   job.shader_dir = options.shader_dir.empty() ? session.resources.shader_dir(std::string(workload.folder))
                                               : options.shader_dir;
   const bool is_file = !run.text("scene.file").empty();
+  const std::unique_ptr<scenes::SceneStore> store = open_scene_store(options.shaders, 0);
   job.scene = scenes::load_scene(is_file ? file_of(run, directory) : run.text("scene.name"),
-                                 {options.assets, false, {}, 0});
+                                 {.assets = options.assets, .threads = 0, .store = store.get()});
   scenes::override_scene(job.scene, run.texts_in("overrides"));
   if (fmt::format("{:016x}", job.scene.hash(0)) != run.text("scene.hash"))
     throw UserError(

@@ -104,7 +104,8 @@ void check_scene(SceneOptions& options) {
   take_workload_name(options);
 }
 
-pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads) {
+pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads,
+                              scenes::SceneStore* store) {
   const WorkloadInfo& workload = find_workload(options.shader);
   pipeline::RenderJob job;
   job.workload = workload.workload;
@@ -114,13 +115,13 @@ pipeline::RenderJob frame_job(const Session& session, const SceneOptions& option
                                               : options.shader_dir;
   report::Progress progress(session.on_terminal ? stdout : nullptr, "loading", session.terminal);
   ProgressPipe pipe(session.progress_descriptor, "loading");
-  job.scene =
-      scenes::load_scene(options.scene, {options.assets, options.instancing,
-                                         [&](double part) {
-                                           progress.update(uint64_t(100 * part), 100);
-                                           pipe.update(uint64_t(1000 * part), 1000);
-                                         },
-                                         threads, options.sequence.is_wanted(), options.sequence.animation});
+  job.scene = scenes::load_scene(options.scene,
+                                 {options.assets, options.instancing,
+                                  [&](double part) {
+                                    progress.update(uint64_t(100 * part), 100);
+                                    pipe.update(uint64_t(1000 * part), 1000);
+                                  },
+                                  threads, options.sequence.is_wanted(), options.sequence.animation, store});
   scenes::override_scene(job.scene, options.frame.overrides());
   return job;
 }
@@ -130,7 +131,8 @@ namespace {
 pipeline::RenderJob scene_job(const Session& session, const SceneOptions& options,
                               const LaunchOptions& launch) {
   pipeline::GpuParams gpu = gpu_of(session.resources, launch);
-  pipeline::RenderJob job = frame_job(session, options, launch.threads);
+  const std::unique_ptr<scenes::SceneStore> store = open_scene_store(launch.shaders, launch.threads);
+  pipeline::RenderJob job = frame_job(session, options, launch.threads, store.get());
   job.gpu = std::move(gpu);
   job.timing = launch.mode == "timing";
   job.no_skip = launch.no_skip;

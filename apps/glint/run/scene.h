@@ -31,8 +31,10 @@ struct SceneOptions {
 // where both the name and --shader say a shader set.
 void check_scene(SceneOptions& options);
 
-// Loads the scene and returns the frame that the options ask for, without a machine.
-pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads);
+// Loads the scene, or takes it from the store, and returns the frame that the options ask for, without a
+// machine.
+pipeline::RenderJob frame_job(const Session& session, const SceneOptions& options, uint32_t threads,
+                              scenes::SceneStore* store = nullptr);
 
 // Holds such a job with its machine, ready to run, and what it refers to: caches of shaders and structures,
 // and what shaders print.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/file_store.h"
 
-#include <array>
 #include <filesystem>
 
 #include "tests/support/catch.h"
@@ -19,10 +18,8 @@ FileStore store_in(const TemporaryFolder& folder) {
 
 // Returns "head|rest" of a key, or "" when it is not found.
 std::string both_of(FileStore& store, const std::string& key) {
-  std::array<char, 4> head{};
-  std::optional<FileStore::Rest> rest = store.find(key, head);
-  if (!rest) return "";
-  return std::string(head.data(), head.size()) + '|' + std::string(rest->data, rest->bytes);
+  const std::optional<FileStore::Large> value = store.find_large(key);
+  return value ? std::string(value->head) + '|' + std::string(value->rest, value->bytes) : "";
 }
 
 }  // namespace
@@ -41,19 +38,30 @@ TEST_CASE("values with and without a rest are found by their keys, each in its o
   CHECK(store.damaged() == 0);
 }
 
+TEST_CASE("a rest that was stored in pieces is one block, on any number of threads") {
+  const TemporaryFolder folder;
+  const std::string long_piece(20'000'000, 'p');  // more than the store hashes at a time
+  const std::string_view pieces[] = {"one ", "", "two ", long_piece};
+  for (const uint32_t threads : {1u, 3u}) {
+    FileStore store({folder.path.string(), ".value", "build", 1 << 26, threads});
+    if (threads == 1) store.store("key", "head", pieces);
+    const bool is_same = both_of(store, "key") == "head|one two " + long_piece;
+    CHECK(is_same);
+  }
+}
+
 TEST_CASE("what is written to a found value stays in the process, and the value outlasts its file") {
   const TemporaryFolder folder;
   FileStore store = store_in(folder);
   store.store("key", "head", "the rest");
-  std::array<char, 4> head{};
-  std::optional<FileStore::Rest> rest = store.find("key", head);
-  REQUIRE(rest);
-  CHECK(reinterpret_cast<uintptr_t>(rest->data) % 4096 == 0);
-  for (uint64_t i = 0; i < FileStore::kRestSlack; ++i) CHECK(rest->data[rest->bytes + i] == 0);
-  rest->data[0] = 'T';
+  const std::optional<FileStore::Large> value = store.find_large("key");
+  REQUIRE(value);
+  CHECK(reinterpret_cast<uintptr_t>(value->rest) % 4096 == 0);
+  for (uint64_t i = 0; i < FileStore::kRestSlack; ++i) CHECK(value->rest[value->bytes + i] == 0);
+  value->rest[0] = 'T';
   CHECK(both_of(store, "key") == "head|the rest");
   std::filesystem::remove(store.file_of("key"));
-  CHECK(std::string(rest->data, rest->bytes) == "The rest");
+  CHECK(std::string(value->rest, value->bytes) == "The rest");
 }
 
 TEST_CASE("a file that is cut or changed anywhere is damaged and found no more") {
