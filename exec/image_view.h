@@ -15,6 +15,9 @@ namespace glint::exec {
 
 enum class Filter : uint8_t { Nearest, Linear };
 enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge, ClampToBorder, MirrorClampToEdge };
+// Says what a filter makes of the texels that have weights above 0: their mean by weight, the least, or the
+// greatest.
+enum class Reduction : uint8_t { Mean, Least, Greatest };
 inline constexpr uint32_t kMaxAnisotropy = 16;  // the most samples of a footprint
 enum class Comparison : uint8_t {
   Never,
@@ -35,6 +38,7 @@ struct Sampler {
   float lod_bias = 0.0f, min_lod = 0.0f, max_lod = 1000.0f;
   bool unnormalized = false;  // coordinates count texels, and only level 0 is read
   Comparison compare = Comparison::Never;
+  Reduction reduction = Reduction::Mean;
   float max_anisotropy = 1.0f;  // from 1, which is isotropic, to kMaxAnisotropy
   std::string unbound{};        // Not empty: nobody bound the sampler, and this names the place.
 };
@@ -100,8 +104,8 @@ struct ImageView {
     const FormatInfo& info = info_of(format);
     const uint64_t layer = uint64_t{first_layer} + at.layer;
     const uint64_t slice = layer * extent(2, at.level) + at.z;
-    const uint64_t row = slice * blocks_of(extent(1, at.level), info.block) + at.y / info.block;
-    const uint64_t block = row * blocks_of(extent(0, at.level), info.block) + at.x / info.block;
+    const uint64_t row = slice * blocks_of(extent(1, at.level), info.block) + block_at(at.y, info.block);
+    const uint64_t block = row * blocks_of(extent(0, at.level), info.block) + block_at(at.x, info.block);
     return base + bytes_before_level(at.level) + block * info.bytes;
   }
 };

@@ -12,12 +12,29 @@
 namespace glint::exec {
 namespace {
 
+Words extremes(const Words& a, const Words& b, Reduction reduction) {
+  Words out;
+  for (size_t c = 0; c < 4; ++c) {
+    const bool takes_first = reduction == Reduction::Least ? !(float_of(b[c]) < float_of(a[c]))
+                                                           : !(float_of(b[c]) > float_of(a[c]));
+    out[c] = takes_first ? a[c] : b[c];
+  }
+  return out;
+}
+
 Words mixed(const Words& a, const Words& b, float weight) {
   if (weight == 0.0f) return a;
   Words out;
   for (size_t c = 0; c < 4; ++c)
     out[c] = std::bit_cast<uint32_t>(float_of(a[c]) * (1.0f - weight) + float_of(b[c]) * weight);
   return out;
+}
+
+// Returns what a filter makes of two texels, of which the second has a weight.
+Words reduced(const Words& a, const Words& b, float weight, Reduction reduction) {
+  if (reduction == Reduction::Mean) [[likely]]
+    return mixed(a, b, weight);
+  return weight == 0.0f ? a : extremes(a, b, reduction);
 }
 
 bool holds(Comparison comparison, float reference, float texel) {
@@ -108,7 +125,9 @@ Words TexelReader::stored(const TexelIndex& at) {
     return {};
   }
   texels_[num_texels_++] = address;
-  return decode_at(image_.format, from, at.x, at.y);
+  // Most texels stand alone, and their decoder is compiled into this function.
+  return image_.format < kFirstBlockFormat ? decode(image_.format, from)
+                                           : decode_at(image_.format, from, at.x, at.y);
 }
 
 Words TexelReader::read(const SampleRequest& request, const Place& place, uint32_t level,
@@ -165,7 +184,8 @@ Words TexelReader::filter(const SampleRequest& request, const Place& place, uint
   size_t count = size_t{1} << place.axes;
   for (const Axis& axis : axes) {
     count /= 2;
-    for (size_t k = 0; k < count; ++k) texel[k] = mixed(texel[2 * k], texel[2 * k + 1], axis.weight);
+    for (size_t k = 0; k < count; ++k)
+      texel[k] = reduced(texel[2 * k], texel[2 * k + 1], axis.weight, sampler_.reduction);
   }
   return texel[0];
 }
@@ -186,26 +206,30 @@ Footprint TexelReader::footprint_of(const SampleRequest& request) const {
 Words TexelReader::filter_levels(const SampleRequest& request, const Levels& levels, Filter kind) {
   const Place place = place_of(request);
   const Words first = filter(request, place, levels.first, kind);
-  return levels.weight == 0.0f ? first
-                               : mixed(first, filter(request, place, levels.second, kind), levels.weight);
+  return levels.weight == 0.0f
+             ? first
+             : reduced(first, filter(request, place, levels.second, kind), levels.weight, sampler_.reduction);
 }
 
-// Returns the mean of samples along the longer side of a footprint (Vulkan, "Texel Anisotropic Filtering").
-// Choice: the sampler's filters hold for each sample. On a cube the direction moves, and not the place on its
-// face, so that samples past an edge lie on the neighbour.
-Words TexelReader::mean_along(const SampleRequest& request, const Footprint& footprint, const Levels& levels,
-                              Filter kind) {
+// Returns the mean of samples along the longer side of a footprint (Vulkan, "Texel Anisotropic Filtering"),
+// or what else the sampler reduces them to. Choice: the sampler's filters hold for each sample. On a cube the
+// direction moves, and not the place on its face, so that samples past an edge lie on the neighbour.
+Words TexelReader::filter_along(const SampleRequest& request, const Footprint& footprint,
+                                const Levels& levels, Filter kind) {
   const Gradient& side = footprint.is_along_y ? request.dy : request.dx;
+  const bool has_mean = sampler_.reduction == Reduction::Mean;
   std::array<double, 4> sum{};
+  Words out{};
   for (uint32_t i = 1; i <= footprint.samples; ++i) {
     const float share = float(i) / float(footprint.samples + 1) - 0.5f;
     SampleRequest one = request;
     for (size_t axis = 0; axis < 3; ++axis) one.at[axis] += share * side[axis];
     const Words words = filter_levels(one, levels, kind);
+    if (!has_mean) out = i == 1 ? words : extremes(out, words, sampler_.reduction);
     for (size_t c = 0; c < 4; ++c) sum[c] += double(float_of(words[c]));
   }
-  Words out;
-  for (size_t c = 0; c < 4; ++c) out[c] = std::bit_cast<uint32_t>(float(sum[c] / footprint.samples));
+  if (has_mean)
+    for (size_t c = 0; c < 4; ++c) out[c] = std::bit_cast<uint32_t>(float(sum[c] / footprint.samples));
   return out;
 }
 
@@ -222,7 +246,7 @@ Words TexelReader::sample(const SampleRequest& request) {
     return {};
   }
   // Filters work on each component alone, so the components may be chosen after them.
-  return swizzled(image_, footprint.samples > 1 ? mean_along(request, footprint, levels, kind)
+  return swizzled(image_, footprint.samples > 1 ? filter_along(request, footprint, levels, kind)
                                                 : filter_levels(request, levels, kind));
 }
 

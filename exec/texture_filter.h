@@ -66,8 +66,8 @@ class TexelReader {
   Footprint footprint_of(const SampleRequest& request) const;
   Words filter(const SampleRequest& request, const Place& place, uint32_t level, Filter filter);
   Words filter_levels(const SampleRequest& request, const Levels& levels, Filter filter);
-  Words mean_along(const SampleRequest& request, const Footprint& footprint, const Levels& levels,
-                   Filter filter);
+  Words filter_along(const SampleRequest& request, const Footprint& footprint, const Levels& levels,
+                     Filter filter);
   // Reads the texels of a linear filter: bit 0 of the index is x, bit 1 is y, bit 2 is z.
   void read_block(const SampleRequest& request, const Place& place, uint32_t level,
                   const std::array<Axis, 3>& axes, std::array<Words, 8>& out);

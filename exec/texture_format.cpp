@@ -333,7 +333,7 @@ Words decode(TexelFormat format, const std::byte* from) {
 }
 
 Words decode_at(TexelFormat format, const std::byte* from, uint32_t x, uint32_t y) {
-  return info_of(format).block == 1 ? decode(format, from) : decode_block(format, from, y % 4 * 4 + x % 4);
+  return format < kFirstBlockFormat ? decode(format, from) : decode_block(format, from, y % 4 * 4 + x % 4);
 }
 
 Words keep_channels(TexelFormat format, Words words) {

@@ -69,9 +69,14 @@ float float_of(const Json& json) {
 }
 
 Json json_of(const exec::Sampler& s) {
-  return {int(s.mag),     int(s.min),     int(s.mip),          int(s.wrap[0]),           int(s.wrap[1]),
-          int(s.wrap[2]), s.border,       bits_of(s.lod_bias), bits_of(s.min_lod),       bits_of(s.max_lod),
-          s.unnormalized, int(s.compare), s.unbound,           bits_of(s.max_anisotropy)};
+  return {int(s.mag),         int(s.min),
+          int(s.mip),         int(s.wrap[0]),
+          int(s.wrap[1]),     int(s.wrap[2]),
+          s.border,           bits_of(s.lod_bias),
+          bits_of(s.min_lod), bits_of(s.max_lod),
+          s.unnormalized,     int(s.compare),
+          s.unbound,          bits_of(s.max_anisotropy),
+          int(s.reduction)};
 }
 exec::Sampler sampler_of(const Json& json) {
   exec::Sampler s;
@@ -82,7 +87,9 @@ exec::Sampler sampler_of(const Json& json) {
   s.min_lod = float_of(json.at(8)), s.max_lod = float_of(json.at(9));
   s.unnormalized = json.at(10), s.compare = exec::Comparison(json.at(11).get<int>());
   s.unbound = json.at(12);
-  if (json.size() > 13) s.max_anisotropy = float_of(json.at(13));  // Older capsules have isotropic samplers.
+  // Older capsules have isotropic samplers, and filters that are means.
+  if (json.size() > 13) s.max_anisotropy = float_of(json.at(13));
+  if (json.size() > 14) s.reduction = exec::Reduction(json.at(14).get<int>());
   return s;
 }
 

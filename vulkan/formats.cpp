@@ -96,9 +96,11 @@ VkFormatFeatureFlags2 image_features_of(VkFormat format) {
            kWithoutFormat;
   if (has_blocks(texels))
     return (out & ~VK_FORMAT_FEATURE_2_BLIT_DST_BIT) | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
-  if (is_depth(format)) return out | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
+  constexpr VkFormatFeatureFlags2 kMinMax = VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_MINMAX_BIT;
+  if (is_depth(format)) return out | kMinMax | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
   if (format == VK_FORMAT_S8_UINT) return out;
-  if (!exec::is_integer(exec::info_of(*texels))) out |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  if (!exec::is_integer(exec::info_of(*texels)))
+    out |= kMinMax | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
   if (can_store(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT | kWithoutFormat;
   if (can_be_atomic(*texels)) out |= VK_FORMAT_FEATURE_2_STORAGE_IMAGE_ATOMIC_BIT;
   return out;
@@ -162,10 +164,11 @@ VkResult GetPhysicalDeviceImageFormatProperties(PhysicalDevice& device, VkFormat
                                                 VkImageTiling tiling, VkImageUsageFlags usage,
                                                 VkImageCreateFlags flags, VkImageFormatProperties* out) {
   *out = {};
-  constexpr VkImageCreateFlags kKnownFlags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT |
-                                             VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
-                                             VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT |
-                                             VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT;
+  constexpr VkImageCreateFlags kKnownFlags =
+      VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
+      VK_IMAGE_CREATE_EXTENDED_USAGE_BIT | VK_IMAGE_CREATE_ALIAS_BIT |
+      VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT |
+      VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
   const bool is_tiled = tiling == VK_IMAGE_TILING_OPTIMAL || tiling == VK_IMAGE_TILING_LINEAR;
   VkFormatFeatureFlags2 features = image_features_of(format);
   if (tiling == VK_IMAGE_TILING_OPTIMAL) features |= attachment_features_of(device, format);

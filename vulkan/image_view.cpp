@@ -115,13 +115,37 @@ void show_as(exec::ImageView& view, exec::TexelFormat format) {
   view.format = format;
 }
 
+// Returns a view of slices of an image with three axes, which it shows as layers.
+exec::ImageView slices_of(const Image& image, const VkImageSubresourceRange& range) {
+  const uint32_t level = range.baseMipLevel, there = image.whole.extent(2, level);
+  const uint32_t first = range.baseArrayLayer, rest = first < there ? there - first : 0;
+  const uint32_t count = range.layerCount == VK_REMAINING_ARRAY_LAYERS ? rest : range.layerCount;
+  if (level >= image.whole.levels || range.levelCount != 1 || count == 0 || count > rest)
+    throw Refusal(fmt::format("slices {} to {} of one level are not in {}, whose level {} has {} slices",
+                              first, first + count, image.whole.name, level, there));
+  exec::ImageView view = exec::part_of(image.whole, {level, 1, 0, 1});
+  view.depth = 1, view.layers = count, view.first_layer = first, view.stored_layers = there;
+  return view;
+}
+
+exec::Reduction reduction_of(const VkSamplerCreateInfo& info) {
+  const auto* asked = find_in_chain<VkSamplerReductionModeCreateInfo>(
+      &info, VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO);
+  if (!asked || asked->reductionMode == VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE)
+    return exec::Reduction::Mean;
+  return asked->reductionMode == VK_SAMPLER_REDUCTION_MODE_MIN ? exec::Reduction::Least
+                                                               : exec::Reduction::Greatest;
+}
+
 }  // namespace
 
 VkResult CreateImageView(Device& device, const VkImageViewCreateInfo* info, VkImageView* out) {
   if (!info->image->memory) throw Refusal(fmt::format("{} is not bound to memory", info->image->whole.name));
   auto made = std::make_unique<VkImageView_T>();
   exec::ImageView& view = made->view;
-  view = exec::part_of(info->image->whole, range_of(*info->image, info->subresourceRange));
+  const bool shows_slices = info->image->type == VK_IMAGE_TYPE_3D && info->viewType != VK_IMAGE_VIEW_TYPE_3D;
+  view = shows_slices ? slices_of(*info->image, info->subresourceRange)
+                      : exec::part_of(info->image->whole, range_of(*info->image, info->subresourceRange));
   show_as(view, texel_format_of(info->format)), view.shape = shape_of(info->viewType);
   const VkComponentMapping& map = info->components;
   view.swizzle = {component_of(map.r, exec::Component::Red), component_of(map.g, exec::Component::Green),
@@ -151,7 +175,7 @@ VkResult CreateSampler(Device& device, const VkSamplerCreateInfo* info, VkSample
   s.min = filter_of(info->minFilter == VK_FILTER_LINEAR);
   s.mip = filter_of(info->mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR);
   s.wrap = {wrap_of(info->addressModeU), wrap_of(info->addressModeV), wrap_of(info->addressModeW)};
-  s.border = border_of(*info);
+  s.border = border_of(*info), s.reduction = reduction_of(*info);
   s.lod_bias = info->mipLodBias, s.min_lod = info->minLod, s.max_lod = info->maxLod;
   s.unnormalized = info->unnormalizedCoordinates;
   static_assert(int(exec::Comparison::Always) == VK_COMPARE_OP_ALWAYS);

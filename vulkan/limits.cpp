@@ -256,6 +256,7 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
   p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
   p.minImportedHostPointerAlignment = kHostPointerAlignment;
   p.maxCustomBorderColorSamplers = kManyDescriptors;
+  p.filterMinmaxSingleComponentFormats = p.filterMinmaxImageComponentMapping = VK_TRUE;
   return p;
 }
 

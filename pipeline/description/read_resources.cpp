@@ -58,6 +58,10 @@ exec::Sampler read_sampler_keys(Reading& r, TableReader& t) {
     r.errors.error(t.take("max_anisotropy")->where,
                    fmt::format("'max_anisotropy' is {}, expected a number from 1 to {}", out.max_anisotropy,
                                exec::kMaxAnisotropy));
+  const std::vector<std::string> reductions{"mean", "min", "max"};
+  out.reduction = exec::Reduction(
+      std::find(reductions.begin(), reductions.end(), t.name("reduction", "mean", reductions)) -
+      reductions.begin());
   const std::vector<std::string> compares{
       "never", "less", "equal", "less_or_equal", "greater", "not_equal", "greater_or_equal", "always"};
   out.compare = exec::Comparison(

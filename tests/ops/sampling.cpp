@@ -162,8 +162,8 @@ Sampling::Index Sampling::first_of(const Request& request, const Place& place, i
     const double x =
         (sampler_.unnormalized ? place.at[axis] : place.at[axis] * double(size)) - (linear ? 0.5 : 0.0);
     // A linear filter of colours is continuous.
-    const bool is_exact = is_exact_on(size);
-    const int64_t first = decided(x, is_exact || (linear && !request.compares));
+    const bool is_exact = is_exact_on(size), is_continuous = linear && !request.compares && has_mean();
+    const int64_t first = decided(x, is_exact || is_continuous);
     weight[axis] = x - double(first);
     out[axis] = first + request.offset[axis];
   }
@@ -227,7 +227,7 @@ Colour Sampling::filtered(const Request& request, const Place& place, int64_t le
   std::array<double, 3> weight{};
   const Index first = first_of(request, place, level, linear, weight);
   if (!linear) return texel(request, place, level, first);
-  Colour out{};
+  std::vector<std::pair<Colour, double>> texels;
   for (size_t block = 0; block < size_t{1} << geometry_.axes; ++block) {
     Index index = first;
     double share = 1;
@@ -236,8 +236,23 @@ Colour Sampling::filtered(const Request& request, const Place& place, int64_t le
       index[axis] += is_second;
       share *= is_second ? weight[axis] : 1 - weight[axis];
     }
-    const Colour colour = corner(request, place, level, index);
-    for (size_t i = 0; i < 4; ++i) out[i] += share * colour[i];
+    texels.emplace_back(corner(request, place, level, index), share);
+  }
+  return reduced(texels);
+}
+
+// Reduces texels with shares, or other colours, to one: their sum by share, or the extreme of those with any.
+Colour Sampling::reduced(const std::vector<std::pair<Colour, double>>& colours) const {
+  Colour out{};
+  bool is_first = true;
+  for (const auto& [colour, share] : colours) {
+    if (share == 0) continue;
+    for (size_t i = 0; i < 4; ++i)
+      out[i] = has_mean()                                     ? out[i] + share * colour[i]
+               : is_first                                     ? colour[i]
+               : sampler_.reduction == exec::Reduction::Least ? std::min(out[i], colour[i])
+                                                              : std::max(out[i], colour[i]);
+    is_first = false;
   }
   return out;
 }
@@ -248,12 +263,10 @@ Colour Sampling::on_levels(const Request& request, double lod, bool linear) {
   if (sampler_.mip == Filter::Nearest)  // Of two equally near levels, it is the finer one.
     return filtered(request, place, std::max<int64_t>(int64_t(std::ceil(lod - 0.5)), 0), linear);
   const auto low = int64_t(lod), high = std::min<int64_t>(low + 1, image_.view.levels - 1);
-  Colour out = filtered(request, place, low, linear);
+  const Colour out = filtered(request, place, low, linear);
   const double share = lod - double(low);
   if (share == 0) return out;
-  const Colour other = filtered(request, place, high, linear);
-  for (size_t i = 0; i < 4; ++i) out[i] = out[i] * (1 - share) + other[i] * share;
-  return out;
+  return reduced({{out, 1 - share}, {filtered(request, place, high, linear), share}});
 }
 
 Colour Sampling::sample(const Request& request) {
@@ -269,15 +282,14 @@ Colour Sampling::sample(const Request& request) {
   const double lod = std::clamp(limited, 0.0, double(image_.view.levels - 1));
   if (footprint.samples == 1) return on_levels(request, lod, linear);
   is_moved_ = true;
-  Colour mean{};
+  std::vector<std::pair<Colour, double>> samples;
   for (int64_t i = 1; i <= footprint.samples; ++i) {
     Request moved = request;
     const double along = double(2 * i - footprint.samples - 1) / double(2 * (footprint.samples + 1));
     for (size_t axis = 0; axis < 3; ++axis) moved.at[axis] += along * footprint.side[axis];
-    const Colour colour = on_levels(moved, lod, linear);
-    for (size_t c = 0; c < 4; ++c) mean[c] += colour[c] / double(footprint.samples);
+    samples.emplace_back(on_levels(moved, lod, linear), 1 / double(footprint.samples));
   }
-  return mean;
+  return reduced(samples);
 }
 
 Colour Sampling::gather(const Request& request, size_t component) {

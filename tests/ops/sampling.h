@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "tests/ops/image_set.h"
 
@@ -55,6 +57,8 @@ class Sampling {
   Colour compared(const Request& request, const Colour& colour) const;
   Index first_of(const Request& request, const Place& place, int64_t level, bool linear,
                  std::array<double, 3>& weight);
+  Colour reduced(const std::vector<std::pair<Colour, double>>& colours) const;
+  bool has_mean() const { return sampler_.reduction == exec::Reduction::Mean; }
   bool is_exact_on(int64_t size) const;
   // Returns the floor of a number that decides something.
   int64_t decided(double x, bool is_exact);

@@ -54,6 +54,7 @@ exec::Sampler sampler_for(const Texture& op, Random& random) {
   out.min_lod = float(random.below(3)) / 2;
   out.max_lod = random.below(2) ? 1000.0f : 2.25f;
   out.compare = exec::Comparison(random.below(8));
+  if (!op.compares && random.below(3) == 0) out.reduction = exec::Reduction(1 + random.below(2));
   constexpr float kAnisotropies[] = {1, 2, 2.5f, 4, 16};
   out.max_anisotropy = kAnisotropies[random.below(5)];
   out.unnormalized = !op.geometry.is_cube && random.below(5) == 0;

@@ -1,7 +1,9 @@
 // Tests textures over the Vulkan loader: anisotropic samplers, and formats with blocks of texels.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/catch.h"
@@ -119,6 +121,97 @@ TEST_CASE("a sampler with a border colour of its own shows it outside of the ima
   CHECK(out.as<float>()[1] == 0.5f);
   CHECK(out.as<float>()[2] == 2);
   CHECK(out.as<float>()[3] == -3);
+}
+
+TEST_CASE("a sampler finds the extremes of the texels that it filters", "[portable]") {
+  VkPhysicalDeviceVulkan12Features features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  features.samplerFilterMinmax = VK_TRUE;
+  Client::Options options;
+  options.more_features = &features;
+  Client client(options);
+  VkFormatProperties can;
+  vkGetPhysicalDeviceFormatProperties(client.physical, VK_FORMAT_R8_UNORM, &can);
+  CHECK(can.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_MINMAX_BIT);
+  const VkExtent3D extent{2, 2, 1};
+  const BoundImage image = client.image(VK_FORMAT_R8_UNORM, extent);
+  const MappedBuffer texels = client.buffer(4), out = client.buffer(4);
+  const std::array<uint8_t, 4> values{51, 204, 102, 153};
+  std::copy(values.begin(), values.end(), texels.as<uint8_t>().begin());
+  REQUIRE(client.upload(texels, image, extent) == VK_SUCCESS);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer O { float v; };\n"
+      "layout(set = 0, binding = 1) uniform sampler2D picture;\n"
+      "void main() { v = textureLod(picture, vec2(0.5), 0).r; }\n",
+      {{kStorage, kTexture}});
+  for (const auto& [mode, expected] :
+       {std::pair{VK_SAMPLER_REDUCTION_MODE_MIN, 51}, {VK_SAMPLER_REDUCTION_MODE_MAX, 204}}) {
+    const VkSamplerReductionModeCreateInfo reduction{VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO,
+                                                     nullptr, mode};
+    VkSamplerCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, info.pNext = &reduction;
+    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+    VkSampler sampler = nullptr;
+    check(vkCreateSampler(client.device, &info, nullptr, &sampler), "vkCreateSampler");
+    client.at_end([&client, sampler] { vkDestroySampler(client.device, sampler, nullptr); });
+    const VkDescriptorSet set =
+        client.set_with_image(pipeline.set_layout, out, kTexture, {sampler, image.view, kGeneral});
+    REQUIRE(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+    CHECK(int(out.as<float>()[0] * 255 + 0.5f) == expected);
+  }
+}
+
+TEST_CASE("a view shows slices of an image with three axes as layers") {
+  VkPhysicalDeviceImage2DViewOf3DFeaturesEXT slices{};
+  slices.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_2D_VIEW_OF_3D_FEATURES_EXT;
+  slices.image2DViewOf3D = VK_TRUE;
+  Client::Options options;
+  options.extensions = {"VK_EXT_image_2d_view_of_3d"}, options.more_features = &slices;
+  Client client(options);
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, info.flags = VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
+  info.imageType = VK_IMAGE_TYPE_3D, info.format = VK_FORMAT_R32_UINT, info.extent = {4, 2, 6};
+  info.mipLevels = 2, info.arrayLayers = 1, info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const BoundImage image{client.bound_image(info), nullptr, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 2, 0, 1}};
+  const auto view_of = [&](uint32_t level, uint32_t slice) {
+    VkImageViewCreateInfo view{};
+    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, view.image = image.image;
+    view.viewType = VK_IMAGE_VIEW_TYPE_2D, view.format = VK_FORMAT_R32_UINT;
+    view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, level, 1, slice, 1};
+    VkImageView out = nullptr;
+    const VkResult result = vkCreateImageView(client.device, &view, nullptr, &out);
+    if (result == VK_SUCCESS)
+      client.at_end([&client, out] { vkDestroyImageView(client.device, out, nullptr); });
+    return out;
+  };
+  const MappedBuffer out = client.buffer(4 * 2 * 6 * 4);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer O { uint o; };\n"
+      "layout(set = 0, binding = 1, r32ui) uniform writeonly uimage2D picture;\n"
+      "void main() { uvec2 p = gl_WorkGroupID.xy; imageStore(picture, ivec2(p), uvec4(10 * p.y + p.x + 1)); "
+      "}\n",
+      {{kStorage, kStorageImage}});
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    const VkClearColorValue zero{};
+    vkCmdClearColorImage(commands, image.image, kGeneral, &zero, 1, &image.all);
+  }) == VK_SUCCESS);
+  for (const auto& [level, slice] : {std::pair{0u, 4u}, {1u, 2u}}) {
+    const VkDescriptorSet set = client.set_with_image(pipeline.set_layout, out, kStorageImage,
+                                                      {nullptr, view_of(level, slice), kGeneral});
+    REQUIRE(client.dispatch(pipeline, set, {4u >> level, 2u >> level, 1}) == VK_SUCCESS);
+    const VkBufferImageCopy region{
+        0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1}, {}, {4u >> level, 2u >> level, 6u >> level}};
+    REQUIRE(client.run([&](VkCommandBuffer commands) {
+      vkCmdCopyImageToBuffer(commands, image.image, kGeneral, out.buffer, 1, &region);
+    }) == VK_SUCCESS);
+    const uint32_t width = 4u >> level, texels = width * (2u >> level);
+    for (uint32_t i = 0; i < texels * (6u >> level); ++i) {
+      const uint32_t x = i % width, y = i % texels / width;
+      CHECK(out.as<uint32_t>()[i] == (i / texels == slice ? 10 * y + x + 1 : 0));
+    }
+  }
+  CHECK(view_of(1, 3) == nullptr);
 }
 
 TEST_CASE("an image with blocks is filled by copies and fetched texel by texel", "[portable]") {

@@ -77,6 +77,22 @@ TEST_CASE("a linear filter mixes the edge with what its wrap mode puts beyond it
   }
 }
 
+TEST_CASE("a filter takes the least or the greatest of the texels that have weights") {
+  ImageLab lab;
+  const uint32_t handle = add_ramp(lab, Wrap::ClampToBorder, Filter::Linear);
+  const auto at = [&](Reduction reduction, float texel) {
+    lab.image(handle).sampler.reduction = reduction;
+    return number(lab.run_one("tex.1d.v4.f32.f32", {handle, bits(texel / 4)})[0]);
+  };
+  CHECK(at(Reduction::Least, 1.75f) == 1);
+  CHECK(at(Reduction::Greatest, 1.75f) == 2);
+  // In the middle of a texel its neighbours have no weight.
+  CHECK(at(Reduction::Least, 1.5f) == 1);
+  CHECK(at(Reduction::Greatest, 1.5f) == 1);
+  CHECK(at(Reduction::Greatest, 3.75f) == 9);
+  CHECK(at(Reduction::Least, 3.75f) == 3);
+}
+
 TEST_CASE("coordinates that are not numbers, infinite or huge read some texel and fault nowhere") {
   for (Wrap mode :
        {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge, Wrap::ClampToBorder, Wrap::MirrorClampToEdge})
