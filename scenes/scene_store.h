@@ -21,7 +21,7 @@ class SceneStore {
   struct Options {
     std::string folder;                      // empty: nothing is kept
     std::string build;                       // identifies the program; scenes of another build are not found
-    uint64_t max_bytes = uint64_t{4} << 30;  // limit of the folder's size; all of LumiBench takes 1.6 GB
+    uint64_t max_bytes = uint64_t{4} << 30;  // limit of the folder's size; all of LumiBench takes 2.5 GB
     uint32_t threads = 1;                    // threads of the host that check and hash
     // Smaller scenes are not kept, because making them takes no longer than finding them. Bytes of vertices,
     // indices and texels.
