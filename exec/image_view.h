@@ -91,22 +91,32 @@ struct ImageView {
   // Returns the bytes of all layers in memory of the levels before `level`. With `levels`, these are the
   // bytes of the image.
   uint64_t bytes_before_level(uint32_t level) const {
-    const FormatInfo& info = info_of(format);
     uint64_t blocks_before = 0;
     for (uint32_t l = 0; l < level; ++l)
-      blocks_before += uint64_t{blocks_of(extent(0, l), info.block)} * blocks_of(extent(1, l), info.block) *
-                       extent(2, l) * layers_in_memory();
-    return blocks_before * info.bytes;
+      blocks_before += blocks_of_slice(l) * extent(2, l) * layers_in_memory();
+    return blocks_before * texel_bytes();
   }
   uint64_t bytes() const { return bytes_before_level(levels); }
   // Returns where a texel lies, or the block that holds it.
   Address address_of(const TexelIndex& at) const {
-    const FormatInfo& info = info_of(format);
     const uint64_t layer = uint64_t{first_layer} + at.layer;
     const uint64_t slice = layer * extent(2, at.level) + at.z;
-    const uint64_t row = slice * blocks_of(extent(1, at.level), info.block) + block_at(at.y, info.block);
-    const uint64_t block = row * blocks_of(extent(0, at.level), info.block) + block_at(at.x, info.block);
-    return base + bytes_before_level(at.level) + block * info.bytes;
+    uint64_t columns = extent(0, at.level), x = at.x, y = at.y;
+    if (has_blocks()) [[unlikely]] {
+      const uint32_t block = info_of(format).block;
+      columns = blocks(0, at.level), x /= block, y /= block;
+    }
+    const uint64_t index = slice * blocks_of_slice(at.level) + y * columns + x;
+    return base + bytes_before_level(at.level) + index * texel_bytes();
+  }
+
+ private:
+  bool has_blocks() const { return format >= kFirstBlockFormat; }
+  // Returns the texels or blocks of one slice of a level.
+  uint64_t blocks_of_slice(uint32_t level) const {
+    if (has_blocks()) [[unlikely]]
+      return uint64_t{blocks(0, level)} * blocks(1, level);
+    return uint64_t{extent(0, level)} * extent(1, level);
   }
 };
 

@@ -111,10 +111,6 @@ const FormatInfo& info_of(TexelFormat format);
 constexpr uint32_t blocks_of(uint32_t texels, uint32_t block) {
   return block == 1 ? texels : (texels + block - 1) / block;
 }
-// Returns the block, of so many texels a side, that holds a texel.
-constexpr uint32_t block_at(uint32_t texel, uint32_t block) {
-  return block == 1 ? texel : texel / block;
-}
 // Returns the format of a name as Vulkan has it, with or without VK_FORMAT_ before it. Formats with the same
 // bits are one: A8B8G8R8_UNORM_PACK32 is R8G8B8A8_UNORM, and D16_UNORM is R16_UNORM.
 std::optional<TexelFormat> format_of_vulkan(std::string_view name);
