@@ -22,6 +22,7 @@ class AccessLines {
   void collect(MemoryAccess& access, const exec::WarpContext& warp, const exec::Issued& issued);
 
  private:
+  void collect_mbarriers(MemoryAccess& access, const isa::Access& places) const;
   void collect_texels(MemoryAccess& access, LaneMask lanes) const;
   void collect_ray_data(MemoryAccess& access, const exec::WarpContext& warp, LaneMask lanes);
   void collect_candidates(MemoryAccess& access, const exec::WarpContext& warp, LaneMask lanes) const;

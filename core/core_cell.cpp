@@ -28,14 +28,15 @@ CoreCell::CoreCell(const Params& params, const Context& context)
       warps_(num_slots(params, context.world), params_, context.world, *table_,
              code_ ? code_->fetch() : nullptr, observers_),
       lsu_(params, context.l1),
+      mbarriers_(MbarrierUnit::make(parts())),
       memory_(parts(), {lsu_, local_layout(params, context.world, context.local_physical),
-                        table_layout(context.world, context.tables), context.turn}),
+                        table_layout(context.world, context.tables), context.turn, mbarriers_.get()}),
       constants_(parts(), code_ ? code_->constants() : nullptr),
       parking_(ParkingLot::make(parts(), memory_, places_)),
       rays_(parts(), context.rt, parking_.get()),
       barriers_(parts()),
       reorder_(ReorderUnit::make(parts(), memory_)),
-      issue_(parts(), {memory_, constants_, rays_, barriers_, reorder_.get()}, doors_),
+      issue_(parts(), {memory_, constants_, rays_, barriers_, reorder_.get(), mbarriers_.get()}, doors_),
       seat_{0, warps_.size(), context.index, context.cores},
       news_(context.news),
       told_(kHasRoom) {
@@ -141,7 +142,10 @@ Cycle CoreCell::next_event(Cycle from) const {
     next = std::min(next, code_->next_event(from - 1));
   if (reorder_) [[unlikely]]
     next = std::min(next, reorder_->next_event(from - 1));
-  next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1)});
+  if (mbarriers_) [[unlikely]]
+    next = std::min(next, mbarriers_->next_event());
+  next = std::min({next, lsu_.next_event(from - 1), l1_.next_event(from - 1), rt_.next_event(from - 1),
+                   memory_.next_event()});
   return std::max(next, from);
 }
 
@@ -167,6 +171,8 @@ void CoreCell::step(Cycle now) {
   rays_.take_answers(now);
   if (reorder_) [[unlikely]]
     reorder_->tick(now);
+  if (mbarriers_) [[unlikely]]
+    mbarriers_->tick(now);
   issue(now);
   active_until_ = now + 1;
   if (parking_) [[unlikely]]

@@ -15,6 +15,7 @@
 #include "core/core_parts.h"
 #include "core/issue_stage.h"
 #include "core/lsu.h"
+#include "core/mbarrier_unit.h"
 #include "core/memory_accesses.h"
 #include "core/params.h"
 #include "core/parking_lot.h"
@@ -182,6 +183,7 @@ class CoreCell final : public Cell {
   WarpSlots warps_;
   Lsu lsu_;
   const Doors doors_{lsu_, rt_};
+  const std::unique_ptr<MbarrierUnit> mbarriers_;  // null when the program has none
   MemoryAccesses memory_;
   ConstantPort constants_;
   const std::unique_ptr<ParkingLot> parking_;  // null when warps keep their places

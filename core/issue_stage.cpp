@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "core/barrier_unit.h"
 #include "core/constant_port.h"
+#include "core/mbarrier_unit.h"
 #include "core/memory_accesses.h"
 #include "core/ray_door.h"
 #include "core/reorder_unit.h"
@@ -111,6 +112,8 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
       break;
     case Finish::Memory:
     case Finish::CallRecord:
+      if (row.is_mbarrier && units_.mbarriers->come(slot, issued, now)) [[unlikely]]
+        break;
       if (!units_.memory.start(slot, row, issued, now)) {
         at.front.at = row.finish == Finish::Memory ? now + 1 : done;
         core_.counts.end(issued.pc, at.front.at - now);
@@ -133,6 +136,10 @@ inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec
       break;
     case Finish::Fence:
       units_.memory.start_fence(slot, row, issued, now);
+      core_.counts.end(issued.pc, row.latency);
+      break;
+    case Finish::Copies:
+      units_.memory.order_copies(slot, row, issued, now);
       core_.counts.end(issued.pc, row.latency);
       break;
   }

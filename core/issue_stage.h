@@ -10,6 +10,7 @@ namespace glint::core {
 
 class BarrierUnit;
 class ConstantPort;
+class MbarrierUnit;
 class MemoryAccesses;
 class RayDoor;
 class ReorderUnit;
@@ -21,7 +22,8 @@ class IssueStage {
     ConstantPort& constants;
     RayDoor& rays;
     BarrierUnit& barriers;
-    ReorderUnit* reorder;  // null: threads stay in their lanes
+    ReorderUnit* reorder;     // null: threads stay in their lanes
+    MbarrierUnit* mbarriers;  // null: the program has no barriers in shared memory
   };
   IssueStage(const CoreParts& core, const Units& units, const Doors& doors)
       : core_(core), units_(units), doors_(doors) {}

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "isa/async_copy.h"
 #include "isa/barrier.h"
+#include "isa/mbarrier.h"
 
 namespace glint::core {
 namespace {
@@ -47,6 +49,11 @@ Finish finish_of(const isa::OpRow& row) {
   return orders_warp ? Finish::Control : finish;
 }
 
+// Returns whether the instruction is an mbarrier.* that waits for the copies of its warp.
+bool follows_copies(const isa::OpRow& row) {
+  return row.effect == Effect::Mbarrier && isa::waits_for_copies(isa::MbarrierKind(row.detail));
+}
+
 uint16_t fence_latency(const isa::OpRow& row, const FenceParams& params) {
   const auto scope = isa::FenceScope(row.detail);
   return uint16_t(scope == isa::FenceScope::Block ? params.block
@@ -56,7 +63,7 @@ uint16_t fence_latency(const isa::OpRow& row, const FenceParams& params) {
 
 Stall wait_of(const isa::OpRow& row, Finish finish) {
   if (finish == Finish::Memory) {
-    if (row.effect == Effect::Load || row.effect == Effect::Atomic)
+    if (row.effect == Effect::Load || row.effect == Effect::Atomic || row.effect == Effect::Mbarrier)
       return row.memory.space == isa::Space::Local    ? Stall::LocalMemory
              : row.memory.space == isa::Space::Shared ? Stall::SharedMemory
                                                       : Stall::LongScoreboard;
@@ -65,6 +72,7 @@ Stall wait_of(const isa::OpRow& row, Finish finish) {
   if (finish == Finish::Rays) return Stall::RtWait;
   if (finish == Finish::Barrier || finish == Finish::Reorder) return Stall::Barrier;
   if (finish == Finish::Fence) return Stall::Fence;
+  if (finish == Finish::Copies) return Stall::LongScoreboard;
   if (finish == Finish::Control) return Stall::Branch;
   if (finish == Finish::CallRecord) return Stall::Call;
   if (row.unit == Unit::Const) return Stall::Const;
@@ -162,6 +170,9 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     row.wait = wait_of(op, row.finish);
     row.is_conditional = op.effect == Effect::Branch && inst.guard != isa::kNoGuard;
     row.latency = row.finish == Finish::Fence ? fence_latency(op, params.fence) : uint16_t(unit.latency);
+    if (row.finish == Finish::Copies)
+      row.latency =
+          isa::CopyGroupKind(op.detail) == isa::CopyGroupKind::Wait ? uint16_t(params.async.copy_wait) : 1;
     row.interval = uint16_t(unit.interval * OpTime::kParts);
     const OpTime* time = row.finish == Finish::Fixed ? op_times->find(op.name) : nullptr;
     if (time) take_time(row, *time);
@@ -169,6 +180,8 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
     if (op.effect == Effect::Atomic) row.atomic = isa::AtomicKind(op.detail);
     row.merges_lanes = params.shared.merges_counts && counts_up(op, inst, image);
     row.is_texture = row.finish == Finish::Memory && op.unit == Unit::Tex;
+    row.is_copy = op.effect == Effect::Copy || follows_copies(op);
+    row.is_mbarrier = op.effect == Effect::Mbarrier;
     row.door = door_of(row, params.texture);
     row.is_value = is_value(row, op);
     rows_.push_back(row);

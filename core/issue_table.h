@@ -56,6 +56,8 @@ struct alignas(32) IssueRow {
   // The instruction does nothing but compute its values in a fixed time, reads at most kFirstUses registers
   // and writes at most one. Most instructions do.
   bool is_value : 1 = false;
+  bool is_mbarrier : 1 = false;  // an mbarrier.*, which other warps may wait for (core/mbarrier_unit.h)
+  bool is_copy : 1 = false;      // a cp.async, or an arrival that waits for some (core/async_copies.h)
   uint16_t latency = 1;
   uint16_t interval = OpTime::kParts;  // interval of the pipe, in parts of a cycle
   // These are the first of the registers that have to be ready, and the first destination. Most instructions

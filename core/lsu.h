@@ -84,6 +84,8 @@ class Lsu {
   // Returns the accesses that have left their queues in this cycle.
   std::span<const uint32_t> accepted() const { return {accepted_.data(), num_accepted_}; }
   const MemoryAccess& access(uint32_t id) const { return accesses_[id]; }
+  // Returns the number of an access that take() has given.
+  uint32_t number_of(const MemoryAccess& access) const { return uint32_t(&access - &accesses_[0]); }
   void release(uint32_t id) {
     free_.push_back(id);
     ++num_vacated_;

@@ -16,7 +16,8 @@ MemoryAccesses::MemoryAccesses(const CoreParts& core, const Context& context)
       lines_(core.params, core.world, core.executor, context.local, context.tables),
       turn_(context.turn),
       holds_operands_(core.params.lsu.holds_operands()),
-      pending_(core.warps.size()) {
+      pending_(core.warps.size()),
+      copies_(AsyncCopies::make(core, context.barriers, core.params.lsu.accesses)) {
 }
 
 bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
@@ -37,7 +38,9 @@ bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issue
   const bool reaches_l1 = !access.lines.lines().empty();
   Pending& pending = pending_[slot];
   pending.has_stored |= access.write && reaches_l1;
-  ++pending.accesses;
+  ++(row.is_copy ? pending.copies : pending.accesses);
+  if (row.is_copy) [[unlikely]]
+    copies_->start(slot, lsu_.number_of(access), issued);
   if (row.finish == Finish::Memory && war_latency(access) > 0) at.scoreboard.hold(core_.table.sources(row));
   if (row.finish == Finish::CallRecord)
     at.front = {kNever, Stall::Call};
@@ -65,6 +68,11 @@ void MemoryAccesses::count(const isa::OpRow& op) {
     ++(shared ? stats.shared_loads : local ? stats.local_loads : stats.global_loads);
   } else if (op.effect == Effect::Store) {
     ++(shared ? stats.shared_stores : local ? stats.local_stores : stats.global_stores);
+  } else if (op.effect == Effect::Copy) {
+    ++stats.global_loads;
+    ++stats.shared_stores;
+  } else if (op.effect == Effect::Mbarrier) {
+    ++stats.shared_atomics;
   } else if (op.effect == Effect::Texture) {
     ++stats.texture_fetches;
   } else if (op.effect == Effect::SurfaceLoad || op.effect == Effect::SurfaceAtomic) {
@@ -111,6 +119,20 @@ void MemoryAccesses::read_operands(uint32_t access_id, Cycle now) {
 
 void MemoryAccesses::complete(uint32_t access_id, Cycle now) {
   const MemoryAccess& access = lsu_.access(access_id);
+  const bool is_copy = core_.table.row(access.pc).is_copy;
+  if (is_copy && !copies_->end(access_id, access.late_until, now)) [[unlikely]]
+    return;
+  finish(access_id, now);
+  if (is_copy) [[unlikely]]
+    while (const auto ended = copies_->take_ended()) finish(*ended, now);
+}
+
+void MemoryAccesses::take_late_copies(Cycle now) {
+  while (const auto late = copies_->due(now)) complete(*late, now);
+}
+
+void MemoryAccesses::finish(uint32_t access_id, Cycle now) {
+  const MemoryAccess& access = lsu_.access(access_id);
   const uint32_t slot = access.slot;
   const Cycle duration = now - access.issued;
   const IssueRow& row = core_.table.row(access.pc);
@@ -123,14 +145,14 @@ void MemoryAccesses::complete(uint32_t access_id, Cycle now) {
   ++counts.progress;
   WarpSlot& at = core_.warps[slot];
   Pending& pending = pending_[slot];
-  --pending.accesses;
+  --(row.is_copy ? pending.copies : pending.accesses);
   if (pending.fence != 0 && pending.accesses == 0) {
     at.front.at = now + pending.fence;
     pending.fence = 0;
   }
   if (!at.warp.simt.finished())
     core_.warps.refresh(slot, now);
-  else if (pending.accesses == 0)
+  else if (in_flight(slot) == 0)
     core_.warps.free(slot, now);
 }
 

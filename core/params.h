@@ -204,6 +204,25 @@ struct FenceParams {
   }
 };
 
+// Holds the times of asynchronous copies and of barriers in shared memory, apart from those of the accesses
+// that they make. Defaults: microbenchmarks of an H200 (bench/probes/async.cu; docs/validation.md).
+struct AsyncParams {
+  uint32_t copy_wait = 22;     // copy and wait take 54 cycles from the L1, 273 to 318 from the L2
+  uint32_t suspension = 5819;  // 5,830 and 7,776 in two programs, which are 3 and 4 microseconds
+  uint32_t wake = 67;          // 88 and 150 from an arrival to behind the wait, in two programs
+  static ParamList params() {
+    return {
+        param(&AsyncParams::copy_wait, "copy_wait", "cycle",
+              "Cycles that cp.async.wait_group takes after the last copy that it waits for.", 1, 60000),
+        param(&AsyncParams::suspension, "suspension", "cycle",
+              "Cycles after which mbarrier.try_wait answers that the phase has not ended.", 1, 10'000'000),
+        param(&AsyncParams::wake, "wake", "cycle",
+              "Cycles from an arrival that ends a phase to the next instruction of a warp that waits for it "
+              "in mbarrier.try_wait.",
+              1, 60000)};
+  }
+};
+
 struct Params {
   uint32_t warps = 32;
   uint32_t schedulers = 4;
@@ -234,6 +253,7 @@ struct Params {
   TextureParams texture;
   SharedParams shared;
   FenceParams fence;
+  AsyncParams async;
   PrologueParams prologue;
   // Hardware behaves as with true. With false, the launch ends when its last write has left its core.
   bool ends_when_written = false;
@@ -300,6 +320,7 @@ struct Params {
         section(&Params::texture, "texture", "Parameters of the texture unit."),
         section(&Params::shared, "shared", "Times of shared memory, which has 32 banks of 4 bytes."),
         section(&Params::fence, "fence", "Times of memory fences."),
+        section(&Params::async, "async", "Times of asynchronous copies and of barriers in shared memory."),
         section(&Params::prologue, "prologue",
                 "Numbers of machine instructions that each warp executes before its first instruction.")};
     for (auto& of_launch : launch_params()) out.push_back(std::move(of_launch));

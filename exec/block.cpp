@@ -16,6 +16,7 @@ void Block::start(uint32_t index, std::array<uint32_t, 3> id, uint32_t num_warps
   num_warps_ = num_warps;
   live_ = num_warps == kMaxBlockWarps ? ~WarpMask{0} : (WarpMask{1} << num_warps) - 1;
   waiting_ = 0;
+  ended_phases = 0;
   barriers_.fill({});
   warps.fill(nullptr);
   // Choice: shared memory starts as zeros; PTX and Vulkan leave it undefined.

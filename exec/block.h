@@ -57,6 +57,7 @@ class Block {
   uint32_t num_warps() const { return num_warps_; }
 
   std::vector<std::byte> shared;
+  uint64_t ended_phases = 0;                         // phases of barriers in shared memory that have ended
   std::array<WarpContext*, kMaxBlockWarps> warps{};  // null when the machine has not started it yet
 
  private:

@@ -48,8 +48,9 @@ bool Control::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& ro
     case Effect::Terminate:
       return return_from(warp, row.effect);
     case Effect::Fence:
+    case Effect::CopyGroup:
       // Every access has its effect when it is executed, in one order for all, so a fence takes time but has
-      // nothing else to do.
+      // nothing else to do, and so does waiting for copies.
       ++simt.pc;
       return true;
     default:

@@ -78,7 +78,8 @@ class Executor {
   // `warp.waiting_for_rays` set: the machine traverses warp.rays[lane] for the lanes that are Traversing,
   // then calls finish_rays(). With World::traversal they call its program instead, like a shader, and no lane
   // that waits is Traversing. A bar.* that has to wait leaves `warp.waiting_at_barrier` set: the warp may be
-  // executed again when another warp of its block has come or ended, and has cleared it.
+  // executed again when another warp of its block has come or ended, and has cleared it. An mbarrier.*_wait
+  // leaves in `warp.waits_for_phase` whether a phase has not ended, and the warp may be executed again.
   Issued execute(WarpContext& warp, Cycle now) {
     const uint32_t pc = warp.simt.pc;
     const Step& step = world_.image->code[pc];
@@ -142,6 +143,22 @@ class Executor {
   const NotFiniteStores& not_finite_stores() const { return images_.not_finite_stores(); }
   // Returns the lanes whose access the last load, store or atomic made in that space.
   LaneMask lanes_in(isa::Space space) const { return memory_.lanes_in(space); }
+
+  // Returns the shared addresses to which the lanes of the last cp.async copied.
+  const isa::Access& copied_to() const { return memory_.copied_to(); }
+  // These belong to a machine in which copies take time. It calls let_arrive_late() first. Then
+  // cp.async.mbarrier.arrive only leaves the places of the barriers in warp.regs.access, and arrive_late()
+  // arrives there when the thread's copies are done. It returns false after a fault.
+  void let_arrive_late() { memory_.let_arrive_late(); }
+  bool arrive_late(WarpContext& warp, uint32_t pc, const isa::Access& places, LaneMask lanes) {
+    return memory_.arrive_late(warp, pc, places, lanes);
+  }
+  // Asks again what a mbarrier.try_wait at `pc` asked, after which the warp has executed nothing, and returns
+  // whether all of its phases have ended.
+  bool ask_again(WarpContext& warp, uint32_t pc, LaneMask lanes) {
+    const Step& step = world_.image->code[pc];
+    return memory_.ask_again(warp, step.inst, *step.row, lanes);
+  }
 
   // Reaches global memory through `view` from now on. Without a view, effects on it happen at once.
   void use(MemoryView* view) { seen_.use(view); }

@@ -48,7 +48,9 @@ bool MemoryOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& 
   seen_.begin_access();
   const LaneMask exec = warp.regs.exec;
   bool ok = true;
-  if (row.memory.space != Space::Generic) {
+  if (row.effect == Effect::Copy) {
+    ok = copy(warp, inst, row, exec);
+  } else if (row.memory.space != Space::Generic) {
     lanes_in_[size_t(row.memory.space)] = exec;
     ok = access(warp, inst, row, row.memory.space, exec);
   } else {
@@ -71,6 +73,7 @@ bool MemoryOps::access(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   switch (space) {
     case Space::Global:
     case Space::Shared:
+      if (row.effect == Effect::Mbarrier) return run_mbarrier(warp, inst, row, lanes);
       return row.effect == Effect::Atomic ? modify(warp, inst, row, space, lanes)
                                           : move_data(warp, inst, row, space, lanes);
     case Space::Local:
@@ -116,27 +119,12 @@ bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, La
                        : address + bytes <= shared.size() ? shared.data() + address
                                                           : nullptr;
     if (!place) [[unlikely]] {
-      const bool is_global = space == Space::Global;
-      const bool is_robust = is_global && world_.robust_buffers && !isa::unbound_place(address);
-      if (!is_robust && !faults_.let_pass(warp, lane, FaultKind::OutOfBounds, [&] {
-            return fmt::format("{} {} bytes at {}{:#x}: {}", verb_of(row.effect), bytes,
-                               is_global ? "" : "shared address ", address,
-                               is_global
-                                   ? whereabouts(*world_.memory, address, bytes)
-                                   : outside_of("the block's shared memory", address, bytes, shared.size()));
-          }))
-        return false;
+      if (!pass_outside(warp, lane, {space, row.effect, bytes}, address)) return false;
       lanes &= ~(LaneMask{1} << lane);
       continue;
     }
     if (const auto beyond = uint32_t(address & (bytes - 1)); beyond) [[unlikely]] {
-      if (!faults_.let_pass(warp, lane, FaultKind::Misaligned, [&] {
-            return fmt::format(
-                "{} {} bytes at {} address {:#x}, which is not a multiple of {}{}", verb_of(row.effect),
-                bytes, name_of(space), address, bytes,
-                space == Space::Global ? ": " + whereabouts(*world_.memory, address, bytes) : "");
-          }))
-        return false;
+      if (!pass_misaligned(warp, lane, {space, row.effect, bytes}, address)) return false;
       address -= beyond;
       place -= beyond;
     }
@@ -149,6 +137,28 @@ bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, La
     });
   lanes_in_[size_t(space)] = lanes;
   return true;
+}
+
+// Returns whether an access outside of its space is let pass.
+bool MemoryOps::pass_outside(const WarpContext& warp, int lane, const Reach& reach, Address address) {
+  const bool is_global = reach.space == Space::Global;
+  if (is_global && world_.robust_buffers && !isa::unbound_place(address)) return true;
+  return faults_.let_pass(warp, lane, FaultKind::OutOfBounds, [&] {
+    return fmt::format(
+        "{} {} bytes at {}{:#x}: {}", verb_of(reach.effect), reach.bytes, is_global ? "" : "shared address ",
+        address,
+        is_global ? whereabouts(*world_.memory, address, reach.bytes)
+                  : outside_of("the block's shared memory", address, reach.bytes, warp.block->shared.size()));
+  });
+}
+
+bool MemoryOps::pass_misaligned(const WarpContext& warp, int lane, const Reach& reach, Address address) {
+  return faults_.let_pass(warp, lane, FaultKind::Misaligned, [&] {
+    return fmt::format(
+        "{} {} bytes at {} address {:#x}, which is not a multiple of {}{}", verb_of(reach.effect),
+        reach.bytes, name_of(reach.space), address, reach.bytes,
+        reach.space == Space::Global ? ": " + whereabouts(*world_.memory, address, reach.bytes) : "");
+  });
 }
 
 bool MemoryOps::move_data(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,

@@ -69,6 +69,8 @@ struct WarpContext {
   bool waiting_for_rays = false;  // An rt.trace or rt.resume has not been finished.
   // The warp executes nothing until another warp of the block has opened the barrier.
   bool waiting_at_barrier = false;
+  // A phase that the last mbarrier.*_wait asked for has not ended. The warp may go on.
+  bool waits_for_phase = false;
   uint32_t warp_index = 0;  // number in the launch, in the order of World::layout
   Block* block = nullptr;   // the block that the warp belongs to
   uint32_t warp_in_block = 0;

@@ -52,6 +52,12 @@ enum class Effect : uint8_t {
   Print,
   PrintPart,
   Fence,  // membar, fence, bar.warp.sync: orders memory accesses; OpRow::detail is the scope (isa/barrier.h)
+  // cp.async copies from the global addresses that the handler forms to the shared addresses of operand 0,
+  // while the warp goes on. OpRow::memory describes a lane's copy in global memory.
+  Copy,
+  CopyGroup,  // cp.async.*_group: ends a group of copies, or waits for groups (isa/async_copy.h)
+  Mbarrier,   // mbarrier.*: changes or asks a barrier in shared memory; OpRow::detail is its kind
+              // (isa/mbarrier.h)
   Count
 };
 
@@ -79,6 +85,7 @@ enum class Finish : uint8_t {
   CallRecord,  // what ends Control, and then the read of the record of the binding table
   Barrier,     // the other warps have come; a bar.arrive ends as Control does
   Fence,       // the warp's earlier accesses are done, and then a fixed time has passed
+  Copies,      // the groups of copies that it waits for are done, and then a fixed time has passed
   Reorder,     // what ends Control, or what a core that regroups lanes says
 };
 
@@ -262,6 +269,23 @@ inline constexpr EffectRow kEffects[] = {
      .family = EffectFamily::Control,
      .finish = Finish::Fence,
      .freedom = {.may_copy = true}},
+    {.effect = Effect::Copy,
+     .family = EffectFamily::Memory,
+     .finish = Finish::Memory,
+     .reads_memory = true,
+     .freedom = {.may_copy = true},
+     .stages = {Stage::Compute}},
+    {.effect = Effect::CopyGroup,
+     .family = EffectFamily::Control,
+     .finish = Finish::Copies,
+     .freedom = {.may_copy = true},
+     .stages = {Stage::Compute}},
+    {.effect = Effect::Mbarrier,
+     .family = EffectFamily::Memory,
+     .finish = Finish::Memory,
+     .reads_memory = true,
+     .writes_memory = true,
+     .stages = {Stage::Compute}},
 };
 static_assert(std::size(kEffects) == size_t(Effect::Count), "every effect has a row");
 static_assert(

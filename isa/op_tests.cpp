@@ -48,6 +48,9 @@ constexpr EffectTest kTests[] = {
     {Effect::Print, "tests/ops/control.cpp"},
     {Effect::PrintPart, "tests/ops/control.cpp"},
     {Effect::Fence, "tests/ops/control.cpp"},
+    {Effect::Copy, "tests/ops/copy.cpp"},
+    {Effect::CopyGroup, "tests/ops/control.cpp"},
+    {Effect::Mbarrier, "tests/ops/control.cpp"},
 };
 static_assert(std::size(kTests) == size_t(Effect::Count));
 static_assert(

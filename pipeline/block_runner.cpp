@@ -94,7 +94,9 @@ bool BlockRunner::run(Executor& executor, uint32_t index, WorkCounts& counts,
 void BlockRunner::run_warp(Executor& executor, WarpContext& warp, WorkCounts& counts,
                            core::CostRecorder* costs, const NodeListener& nodes) {
   const uint64_t end = warp.instructions + kQuantum;
-  for (bool finished = false; !finished && !warp.waiting_at_barrier && warp.instructions < end;) {
+  warp.waits_for_phase = false;  // Other warps have had their turns since it asked.
+  for (bool finished = false;
+       !finished && !warp.waiting_at_barrier && !warp.waits_for_phase && warp.instructions < end;) {
     const exec::Issued issued = executor.execute(warp, 0);
     if (executor.fault()) throw Failed{*executor.fault()};
     ClassCounts& by_class = counts.by_class[size_t(issued.row->klass)];

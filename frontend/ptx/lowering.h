@@ -136,6 +136,17 @@ class KernelLowering {
   VirtualOperand video_result(const Instruction& inst, const VideoForm& form, VirtualOperand third);
   void finish_video(const Instruction& inst, VirtualOperand result, VirtualOperand third, bool adds);
 
+  // These functions are in lowering_async.cpp.
+  bool lower_async(const Instruction& inst);
+  void lower_copy(const Instruction& inst);
+  void lower_copy_group(const Instruction& inst);
+  void lower_copy_arrival(const Instruction& inst);
+  void lower_mbarrier(const Instruction& inst);
+  void lower_pending_count(const Instruction& inst);
+  VirtualOperand source_bytes(const Instruction& inst, const Operand& o, uint32_t bytes);
+  VirtualOperand whole_address(const Operand& o);
+  VirtualOperand barrier_address(const Operand& o, bool is_generic, int64_t& imm);
+
   // These functions are in lowering_memory.cpp.
   void lower_memory(const Instruction& inst);
   void lower_atomic(const Instruction& inst, const MemoryForm& form);

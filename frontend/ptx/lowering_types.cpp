@@ -90,6 +90,14 @@ std::vector<OperandRule> operand_rules(const Instruction& inst) {
       return operand.kind == Operand::Kind::Vector;
     });
     if (!has_parts) each([&](size_t) { return type; });
+  } else if (op == "mbarrier") {
+    // States have 64 bits, and counts, parities and hints 32.
+    const bool asks = inst.words[1].ends_with("_wait") && !has_word(inst.words, "parity");
+    const size_t state = asks                                  ? 2
+                         : inst.words[1] == "pending_count"    ? 1
+                         : inst.words[1].starts_with("arrive") ? 0
+                                                               : 9;
+    each([&](size_t i) { return i == state ? type : kWord; });
   } else if (op == "atom" || op == "red" || std::find(kPlain.begin(), kPlain.end(), op) != kPlain.end()) {
     const bool is_wide = has_word(inst.words, "wide");
     each([&](size_t i) { return is_wide && (i == 0 || i == 3) ? doubled(type) : type; });

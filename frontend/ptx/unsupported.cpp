@@ -10,16 +10,16 @@ namespace {
 
 constexpr const char* kTextures = "textures and surfaces, because a launch file cannot bind them";
 constexpr const char* kTensors = "ops of tensor cores";
-constexpr const char* kAsync = "asynchronous copies and their barriers";
+constexpr const char* kBulk = "bulk copies, and the transactions that barriers wait for";
 constexpr const char* kClusters = "clusters of more than one block";
 
 const std::map<std::string, const char*, std::less<>>& part_by_op() {
   static const std::map<std::string, const char*, std::less<>> kParts{
-      {"tex", kTextures},     {"tld4", kTextures},    {"txq", kTextures},       {"suld", kTextures},
-      {"sust", kTextures},    {"sured", kTextures},   {"suq", kTextures},       {"istypep", kTextures},
-      {"mma", kTensors},      {"wmma", kTensors},     {"wgmma", kTensors},      {"tcgen05", kTensors},
-      {"ldmatrix", kTensors}, {"stmatrix", kTensors}, {"movmatrix", kTensors},  {"cp", kAsync},
-      {"mbarrier", kAsync},   {"mapa", kClusters},    {"getctarank", kClusters}};
+      {"tex", kTextures},       {"tld4", kTextures},    {"txq", kTextures},      {"suld", kTextures},
+      {"sust", kTextures},      {"sured", kTextures},   {"suq", kTextures},      {"istypep", kTextures},
+      {"mma", kTensors},        {"wmma", kTensors},     {"wgmma", kTensors},     {"tcgen05", kTensors},
+      {"ldmatrix", kTensors},   {"stmatrix", kTensors}, {"movmatrix", kTensors}, {"mapa", kClusters},
+      {"getctarank", kClusters}};
   return kParts;
 }
 
@@ -27,7 +27,11 @@ const std::map<std::string, const char*, std::less<>>& part_by_op() {
 
 std::string unsupported_part(const Words& words) {
   if (const auto part = part_by_op().find(words[0]); part != part_by_op().end()) return part->second;
-  if ((words[0] == "st" || words[0] == "red") && has_word(words, "async")) return kAsync;
+  if ((words[0] == "st" || words[0] == "red") && has_word(words, "async")) return kBulk;
+  if (words[0] == "cp" && (has_word(words, "bulk") || words[1] == "reduce")) return kBulk;
+  if (words[0] == "mbarrier" && (has_word(words, "expect_tx") || has_word(words, "complete_tx")))
+    return kBulk;
+  if (words[0] == "mbarrier" && has_word(words, "shared::cluster")) return kClusters;
   if (words[0] == "barrier" && has_word(words, "cluster")) return kClusters;
   return {};
 }

@@ -52,6 +52,8 @@ std::span<const FamilyEntry> family_entries() {
       {"warp", "In these ops lanes read each other: shuffles, votes, matches and reductions.", &warp_rows},
       {"barrier", "These ops wait for the other warps of the block, and order memory accesses.",
        &baseline::barrier_rows},
+      {"asynchronous", "These ops copy to shared memory while the warp goes on, and wait at barriers there.",
+       &baseline::async_rows},
       {"texture", "These ops filter textures, fetch and gather texels, and query textures.",
        &baseline::texture_rows},
       {"surface", "These ops load, store and change texels of storage images.", &baseline::surface_rows},

@@ -8,6 +8,7 @@
 namespace glint::isa::baseline {
 RowList atomic_rows();
 RowList barrier_rows();
+RowList async_rows();
 RowList texture_rows();
 RowList surface_rows();
 RowList control_rows();

@@ -38,8 +38,11 @@ Cycle IntervalMachine::access(Core& core, uint32_t slot, const exec::Issued& iss
     if (is_atomic)
       count_turns(core.lines, *world_.memory, addresses, bytes, params_.core.lsu.atomic_turns,
                   !isa::only_writes_memory(issued.row->effect));
+    const bool is_copy = issued.row->effect == Effect::Copy;
     if (const LaneMask lanes = executor_.lanes_in(Space::Shared))
-      done = std::max(done, access_shared(core, core::shared_passes(addresses, lanes, bytes, is_atomic),
+      done = std::max(done, access_shared(core,
+                                          core::shared_passes(is_copy ? executor_.copied_to() : addresses,
+                                                              lanes, bytes, is_atomic || is_copy),
                                           is_atomic, accepted));
   }
   return std::max(done, access_lines(core, issued, begin, local != 0));

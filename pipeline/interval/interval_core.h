@@ -21,6 +21,7 @@ struct IntervalMachine::Core {
     std::array<Cycle, core::kScoreboardEntries> ready{};  // cycles in which registers are ready
     bool waits = false;                                   // at a barrier
     Cycle arrived = 0;                                    // when it came there
+    Cycle copied = 0;                                     // when the last of its asynchronous copies is done
   };
   Core(const GpuParams& params, const exec::World& world, MemoryModel& memory, uint32_t core_index,
        const core::Residency& residency, Address locals)

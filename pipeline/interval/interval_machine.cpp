@@ -125,6 +125,7 @@ bool IntervalMachine::launch(Core& core, uint32_t place, Cycle at) {
     executor_.start(warp.context, core.blocks[place], i,
                     {slot, uint32_t(core.warps.size()), core.index, params_.cores});
     warp.ready.fill(0);
+    warp.copied = 0;
     core.events.push({begin, slot, Next::Run});
   }
   return true;
@@ -174,9 +175,14 @@ IntervalMachine::Next IntervalMachine::execute(Core& core, uint32_t slot, Cycle&
     Cycle done = now + row.latency;
     if (row.finish == Finish::Memory || row.finish == Finish::CallRecord)
       done = access(core, slot, issued, row, now);
+    // Model: cp.async.wait_group waits for all copies of the warp.
+    if (issued.row->effect == isa::Effect::Copy)
+      core.warps[slot].copied = std::max(core.warps[slot].copied, done);
+    if (row.finish == Finish::Copies) done = std::max(now, core.warps[slot].copied) + row.latency;
     for (const uint16_t def : table_.defs(row)) ready[def] = done;
     const bool holds = row.finish == Finish::Control || row.finish == Finish::CallRecord ||
-                       row.finish == Finish::Fence || (row.finish == Finish::Barrier && !has_blocks_);
+                       row.finish == Finish::Fence || row.finish == Finish::Copies ||
+                       (row.finish == Finish::Barrier && !has_blocks_);
     now = holds ? done : now + table_.issues(pc);
     if (issued.finished) return Next::End;
     if (warp.waiting_for_rays) return Next::Rays;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/ops/control_cases.h"
 
+#include <utility>
+
 namespace glint::test {
 namespace {
 
@@ -327,7 +329,11 @@ std::vector<ControlCase> make_cases() {
 }  // namespace
 
 const std::vector<ControlCase>& control_cases() {
-  static const std::vector<ControlCase> cases = make_cases();
+  static const std::vector<ControlCase> cases = [] {
+    std::vector<ControlCase> all = make_cases();
+    for (ControlCase& test : async_cases()) all.push_back(std::move(test));
+    return all;
+  }();
   return cases;
 }
 

@@ -25,5 +25,7 @@ struct ControlCase {
   std::string header = {};     // directives before it
 };
 const std::vector<ControlCase>& control_cases();
+// Returns those of them that copy to shared memory or use barriers there.
+std::vector<ControlCase> async_cases();
 
 }  // namespace glint::test

@@ -142,6 +142,12 @@ OpLab::OpLab(const isa::OpRow& row, int32_t displacement, const std::string& pre
   exec::set_blocks(world, {1, 1, 1}, {uint32_t(kThreads), 1, 1}, kSharedBytes);
 }
 
+// Returns whether the op may reach shared memory, as copies do besides the space of their row.
+bool OpLab::uses_shared() const {
+  return row_.memory.space == isa::Space::Shared || row_.memory.space == isa::Space::Generic ||
+         row_.effect == isa::Effect::Copy;
+}
+
 // Copies shared memory and the lanes' stacks from global memory, or back.
 std::string OpLab::copies(bool to_spaces) const {
   const isa::Space space = row_.memory.space;
@@ -153,7 +159,7 @@ std::string OpLab::copies(bool to_spaces) const {
                : fmt::format("    ld.{}.b32 %r8, [{}];\n    st.global.b32 [{}], %r8;\n", name, to, from);
   };
   if (is_image) return out;
-  if (space == isa::Space::Shared || space == isa::Space::Generic) {
+  if (uses_shared()) {
     if (!to_spaces) out += "    bar.sync 0, 0;\n";
     for (uint32_t at = 0; at < kSharedBytes; at += kThreads * 4)
       copy("shared", fmt::format("%rd6 + {}", at), fmt::format("%r5 + {}", at));
@@ -233,8 +239,7 @@ void OpLab::read_spaces(Spaces& out) const {
     std::memcpy(to.data(), memory.find(from, to.size()), to.size());
   };
   read(global_, out.global);
-  if (row_.memory.space == isa::Space::Shared || row_.memory.space == isa::Space::Generic)
-    read(shared_, out.shared);
+  if (uses_shared()) read(shared_, out.shared);
   for (size_t t = 0; t < kThreads; ++t) read(local_ + t * kLocalBytes, out.local[t]);
   for (size_t i = 0; i < world.images.size(); ++i) read(world.images[i].base, out.images[i]);
 }

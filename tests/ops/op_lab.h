@@ -77,6 +77,7 @@ class OpLab {
 
  private:
   std::string program_text(const std::string& prelude);
+  bool uses_shared() const;
   std::string copies(bool to_spaces) const;
   Outcome run_on(bool timing, const std::vector<Column>& sources, uint64_t enabled, const Spaces& before);
   void read_spaces(Spaces& out) const;

@@ -15,6 +15,7 @@ using Oracle = uint64_t (*)(const isa::OpRow& row);
 
 uint64_t check_access(const isa::OpRow& row);
 uint64_t check_atomic(const isa::OpRow& row);
+uint64_t check_copy(const isa::OpRow& row);
 uint64_t check_control(const isa::OpRow& row);
 uint64_t check_callable(const isa::OpRow& row);
 uint64_t check_hit_object(const isa::OpRow& row);
@@ -30,11 +31,17 @@ struct OracleFile {
   Oracle check;
 };
 inline constexpr OracleFile kOracles[] = {
-    {"tests/ops/access.cpp", &check_access},         {"tests/ops/atomic.cpp", &check_atomic},
-    {"tests/ops/callable.cpp", &check_callable},     {"tests/ops/control.cpp", &check_control},
-    {"tests/ops/hit_object.cpp", &check_hit_object}, {"tests/ops/image_query.cpp", &check_image_query},
-    {"tests/ops/ray_query.cpp", &check_ray_query},   {"tests/ops/ray_tracing.cpp", &check_ray_tracing},
-    {"tests/ops/surface.cpp", &check_surface},       {"tests/ops/texture.cpp", &check_texture},
+    {"tests/ops/access.cpp", &check_access},
+    {"tests/ops/atomic.cpp", &check_atomic},
+    {"tests/ops/callable.cpp", &check_callable},
+    {"tests/ops/control.cpp", &check_control},
+    {"tests/ops/copy.cpp", &check_copy},
+    {"tests/ops/hit_object.cpp", &check_hit_object},
+    {"tests/ops/image_query.cpp", &check_image_query},
+    {"tests/ops/ray_query.cpp", &check_ray_query},
+    {"tests/ops/ray_tracing.cpp", &check_ray_tracing},
+    {"tests/ops/surface.cpp", &check_surface},
+    {"tests/ops/texture.cpp", &check_texture},
 };
 
 }  // namespace glint::test

@@ -78,8 +78,8 @@ TEST_CASE(
   says("tex.2d.v4.f32.f32 {%f1,%f2,%f3,%f4}, [%d1,{%f1,%f2}];", "which belongs to textures and surfaces");
   says("mma.sync.aligned.m16n8k16.row.col.f32.f16.f16.f32 %r1,%r2,%r3,%r1;",
        "belongs to ops of tensor cores");
-  says("cp.async.commit_group;", "'cp.async.commit_group', which belongs to asynchronous copies");
-  says("st.async.shared::cluster.u32 [%r1], %r2, [%r3];", "belongs to asynchronous copies");
+  says("cp.async.bulk.commit_group;", "'cp.async.bulk.commit_group', which belongs to bulk copies");
+  says("st.async.shared::cluster.u32 [%r1], %r2, [%r3];", "belongs to bulk copies");
   says("barrier.cluster.arrive;", "belongs to clusters of more than one block");
   says("vadd4.u32.u32.u32 %r2, %r1.b1, %r1, %r2;",
        "test.ptx:8:24: error: not supported: '%r1.b1', a byte or half");
