@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/async_copies.h"
 #include "tests/ptx/one_warp.h"
 #include "tests/support/catch.h"
 
@@ -253,6 +254,27 @@ TEST_CASE("a wait for groups lets the youngest ones be under way, and a fence wa
   CHECK(cycles("cp.async.wait_all;") >= both - 1);
   CHECK(cycles("cp.async.wait_all;") <= both + 1);  // It is a commit and a wait.
   CHECK(fence < first);
+}
+
+TEST_CASE("copies are counted by group, the youngest seven groups and the open one apart") {
+  core::CopyGroups groups;
+  std::vector<uint32_t> numbers;
+  for (int i = 0; i < 10; ++i) {
+    numbers.push_back(groups.start());
+    CHECK(groups.start() == numbers.back());
+    groups.commit();
+  }
+  groups.start();
+  CHECK(groups.num_before(0) == 20);  // without the copy of the open group
+  CHECK(groups.num_before(1) == 18);
+  CHECK(groups.num_before(6) == 8);
+  CHECK(groups.num_before(7) == 6);
+  CHECK(groups.num_before(9) == 6);  // The three oldest are one.
+  groups.end(numbers[0]);
+  groups.end(numbers[9]);
+  CHECK(groups.num_before(0) == 18);
+  CHECK(groups.num_before(1) == 17);
+  CHECK(groups.num_before(7) == 5);
 }
 
 TEST_CASE("forms of copies and barriers are taken and refused as the assembler of an H200 does") {
