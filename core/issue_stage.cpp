@@ -96,8 +96,8 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
 
 // Hands an instruction over to its unit. `late` is the number of cycles that the instruction waits in front
 // of its pipe.
-inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late,
-                                  Cycle now) {
+[[gnu::always_inline]] inline void IssueStage::hand_over(uint32_t slot, const IssueRow& row,
+                                                         const exec::Issued& issued, Cycle late, Cycle now) {
   WarpSlot& at = core_.warps[slot];
   const Cycle done = now + late + row.latency;
   at.front = {now + 1, Stall::RawFixed};
