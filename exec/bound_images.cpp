@@ -49,6 +49,7 @@ const ImageView* BoundImages::find(const WarpContext& warp, const isa::OpRow& ro
   const bool filters = row.image.request == ImageRequest::Sample || row.image.request == ImageRequest::Gather;
   const std::string& unbound = !image.is_bound ? image.name : sampler_of(image, handle).unbound;
   if (!image.is_bound || (filters && !unbound.empty())) [[unlikely]] {
+    if (!image.is_bound && image.is_null) return nullptr;
     faults_.let_pass(warp, lane, FaultKind::Image,
                      [&] { return fmt::format("uses {}, to which nothing is bound", unbound); });
     return nullptr;

@@ -11,7 +11,7 @@ class BoundImages {
   BoundImages(const World& world, FaultGate& faults) : world_(world), faults_(faults) {}
 
   // Returns the image of a lane's handle. Null says that there is none that the op can use. That is a fault,
-  // or it was let pass (FaultGate::fault() is then not set).
+  // or it was let pass, or the image is null on purpose (FaultGate::fault() is then not set).
   const ImageView* find(const WarpContext& warp, const isa::OpRow& row, int lane);
   const Sampler& sampler_of(const ImageView& image, Address handle) const;
   // Returns the format of the image of a lane's handle.

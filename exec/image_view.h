@@ -71,6 +71,9 @@ struct ImageView {
   uint32_t samples = 1;  // samples of a texel, which are that many layers
   Sampler sampler{};
   bool is_bound = true;  // false: its use is a fault, and `name` names the place
+  // With this, and without is_bound, it is no image on purpose (Vulkan's nullDescriptor): reads and queries
+  // give 0, and stores are dropped.
+  bool is_null = false;
   // A view of some layers begins at layer `first_layer` of `stored_layers` that each level has in memory.
   // With 0, memory holds the view's layers only.
   uint32_t first_layer = 0, stored_layers = 0;

@@ -143,6 +143,7 @@ bool MemoryOps::locate(WarpContext& warp, const isa::OpRow& row, Space space, La
 bool MemoryOps::pass_outside(const WarpContext& warp, int lane, const Reach& reach, Address address) {
   const bool is_global = reach.space == Space::Global;
   if (is_global && world_.robust_buffers && !isa::unbound_place(address)) return true;
+  if (is_global && isa::is_null_address(address)) return true;
   return faults_.let_pass(warp, lane, FaultKind::OutOfBounds, [&] {
     return fmt::format(
         "{} {} bytes at {}{:#x}: {}", verb_of(reach.effect), reach.bytes, is_global ? "" : "shared address ",

@@ -39,4 +39,12 @@ constexpr std::optional<UnboundPlace> unbound_place(uint64_t address) {
   return UnboundPlace{uint32_t(place / kMaxBindings), uint32_t(place % kMaxBindings)};
 }
 
+// Gives the address in a descriptor of nothing (Vulkan's nullDescriptor): loads from it give 0, stores to it
+// are dropped, and neither is a fault. At most kNullReach bytes may be added or subtracted.
+inline constexpr uint64_t kNullAddress = 0xfffe'0000'0000'0000, kNullReach = uint64_t{1} << 48;
+constexpr bool is_null_address(uint64_t address) {
+  return address - (kNullAddress - kNullReach) < 2 * kNullReach;
+}
+static_assert(unbound_address(kMaxSets, 0) <= kNullAddress - kNullReach);
+
 }  // namespace glint::isa

@@ -36,6 +36,10 @@ BufferRange LaunchBuilder::unbound(BindingPlace place) {
   return {isa::unbound_address(place.first, place.second), 0};
 }
 
+BufferRange LaunchBuilder::null() {
+  return {isa::kNullAddress, 0};
+}
+
 void LaunchBuilder::write(BindingPlace place, uint64_t address_or_handle, uint64_t bytes_or_count) {
   bound_.insert(place);
   write_descriptor(world, place, address_or_handle, bytes_or_count);

@@ -59,6 +59,9 @@ class LaunchBuilder {
 
   // Returns the range of an element that nobody wrote. Its use is a fault that names the place.
   static BufferRange unbound(BindingPlace place);
+  // Returns the range of a buffer that the host has left out on purpose: loads give 0, and stores are
+  // dropped. An acceleration structure is left out with address 0.
+  static BufferRange null();
 
   // Bind all elements of a binding, in order; missing ones up to the shaders' count are unbound. A place that
   // no shader declares may be bound. Where the shaders declare an array of buffers or structures, the

@@ -48,6 +48,12 @@ exec::ImageView unbound_image(BindingPlace place) {
   return image_titled(title(nameless(place)));
 }
 
+exec::ImageView null_image() {
+  exec::ImageView out = image_titled("null descriptor");
+  out.is_null = true;
+  return out;
+}
+
 exec::Sampler unbound_sampler(BindingPlace place) {
   return sampler_titled(title(nameless(place)));
 }

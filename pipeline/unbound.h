@@ -17,6 +17,9 @@ using BindingPlace = std::pair<uint32_t, uint32_t>;  // set, binding
 exec::ImageView unbound_image(BindingPlace place);
 exec::Sampler unbound_sampler(BindingPlace place);
 
+// Returns what stands for an image that the host has left out on purpose. Its use is no fault.
+exec::ImageView null_image();
+
 // Fills one binding. Images and samplers are added to the world's, so whoever binds arrays of them has to do
 // so before. Choice: Vulkan leaves the use of such a descriptor undefined, even with robustBufferAccess. Here
 // it is a fault, and a fault that is let pass behaves as an access outside of a buffer or an image.

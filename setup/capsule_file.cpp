@@ -104,6 +104,7 @@ Json json_of(const exec::ImageView& v) {
           {"shape", int(v.shape)},
           {"sampler", json_of(v.sampler)},
           {"bound", v.is_bound},
+          {"null", v.is_null},
           {"layer", {v.first_layer, v.stored_layers}},
           {"swizzle", swizzle}};
 }
@@ -116,6 +117,7 @@ exec::ImageView image_of(const Json& json) {
   v.levels = size.at(4), v.samples = size.at(5);
   v.base = json.at("base"), v.shape = isa::ImageShape(json.at("shape").get<int>());
   v.sampler = sampler_of(json.at("sampler")), v.is_bound = json.at("bound");
+  v.is_null = json.value("null", false);
   v.first_layer = json.at("layer").at(0), v.stored_layers = json.at("layer").at(1);
   for (size_t i = 0; i < 4; ++i) v.swizzle[i] = exec::Component(json.at("swizzle").at(i).get<int>());
   return v;

@@ -43,6 +43,7 @@ struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceRayTracingPipelinePropertiesKHR,
                           VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV,
                           VkPhysicalDeviceDescriptorBufferPropertiesEXT,
+                          VkPhysicalDeviceRobustness2PropertiesEXT,
                           VkPhysicalDeviceCustomBorderColorPropertiesEXT {
   // The structures of 1.1 rename these.
   VkShaderStageFlags supportedStages = 0;

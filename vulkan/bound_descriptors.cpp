@@ -21,6 +21,11 @@ bool exists(const Device& device, const void* resource) {
   return resource && device.bindable.contains(resource);
 }
 
+// Returns whether a descriptor stands for nothing on purpose.
+bool is_null(const Device& device, const Descriptor& descriptor) {
+  return descriptor.is_null && device.has("nullDescriptor");
+}
+
 // Names a binding of a set that is bound, with its descriptors.
 struct Place {
   const BoundSet& set;
@@ -49,7 +54,9 @@ Address inline_block_of(const BoundSet& bound, uint32_t number) {
 pipeline::BufferRange buffer_range(Device& device, const Place& place, uint32_t element,
                                    pipeline::BufferRange unbound) {
   const Descriptor& descriptor = place.at(element);
-  if (descriptor.address) return {descriptor.address, descriptor.range};
+  if (descriptor.address)
+    return {device.parts.open(device.memory, descriptor.address, descriptor.range), descriptor.range};
+  if (is_null(device, descriptor)) return pipeline::LaunchBuilder::null();
   if (!exists(device, descriptor.buffer)) return unbound;
   const VkDeviceSize dynamic =
       place.layout.is_dynamic() ? place.set.dynamic_offsets.at(place.layout.first_dynamic + element) : 0;
@@ -66,11 +73,14 @@ void bind_buffers(Device& device, pipeline::LaunchBuilder& builder, const Place&
   builder.bind_buffers(number, all);
 }
 
-void bind_structures(pipeline::LaunchBuilder& builder, const Place& place, pipeline::BindingPlace number) {
+// A ray into a structure at address 0 misses.
+void bind_structures(const Device& device, pipeline::LaunchBuilder& builder, const Place& place,
+                     pipeline::BindingPlace number) {
   std::vector<pipeline::BufferRange> all;
   for (uint32_t i = 0; i < place.layout.count; ++i) {
     const Address structure = place.at(i).structure;
-    all.push_back(structure ? pipeline::BufferRange{structure, 0} : pipeline::LaunchBuilder::unbound(number));
+    all.push_back(structure || is_null(device, place.at(i)) ? pipeline::BufferRange{structure, 0}
+                                                            : pipeline::LaunchBuilder::unbound(number));
   }
   builder.bind_buffers(number, all);
 }
@@ -96,6 +106,7 @@ exec::ImageView image_of(Device& device, const Descriptor& descriptor, pipeline:
                          descriptor.range);
   if (exists(device, descriptor.texels) && exists(device, descriptor.texels->buffer))
     return texels_of(device, *descriptor.texels);
+  if (is_null(device, descriptor)) return pipeline::null_image();
   if (!exists(device, descriptor.view)) return pipeline::unbound_image(number);
   exec::ImageView out = descriptor.view->view;
   if (exists(device, descriptor.sampler)) out.sampler = descriptor.sampler->sampler;
@@ -145,7 +156,7 @@ void bind(Device& device, pipeline::LaunchBuilder& builder, const Bindings& boun
     case DescriptorKind::Image:
       return bind_images(device, builder, place, number);
     case DescriptorKind::AccelerationStructure:
-      return bind_structures(builder, place, number);
+      return bind_structures(device, builder, place, number);
   }
 }
 

@@ -24,16 +24,35 @@ Address BufferParts::open(mem::AddressSpace& memory, const Buffer& buffer, VkDev
   return found->second;
 }
 
+Address BufferParts::open(mem::AddressSpace& memory, Address address, uint64_t bytes) {
+  const auto slots = memory.slots();
+  const uint64_t number = address >> mem::AddressSpace::kShift, first = uint32_t(address);
+  if (number >= slots.size() || first > slots[number].bytes || bytes >= slots[number].bytes - first)
+    return address;
+  const mem::AddressSpace::Slot slot = slots[number];
+  const auto [found, is_new] = windows_at_.try_emplace(AddressPart{address, bytes}, 0);
+  if (is_new)
+    found->second = memory.open_window(fmt::format("{} bytes at address {:#x}", bytes, address), slot.backing,
+                                       uint64_t(slot.data - memory.data(slot.backing)) + first, bytes);
+  return found->second;
+}
+
 void BufferParts::forget(mem::AddressSpace& memory, const Buffer& buffer) {
+  const Address begin = buffer.address;
+  auto part = begin ? windows_at_.lower_bound(AddressPart{begin, 0}) : windows_at_.end();
+  for (; part != windows_at_.end() && part->first.first - begin <= buffer.bytes;
+       part = windows_at_.erase(part))
+    memory.free(part->second);
   auto at = windows_.lower_bound(Part{buffer.number, 0, 0});
   for (; at != windows_.end() && at->first.buffer == buffer.number; at = windows_.erase(at))
     memory.free(at->second);
 }
 
 void BufferParts::trim(mem::AddressSpace& memory) {
-  if (windows_.size() < kManyParts) return;
+  if (windows_.size() + windows_at_.size() < kManyParts) return;
   for (const auto& [part, address] : windows_) memory.free(address);
-  windows_.clear();
+  for (const auto& [part, address] : windows_at_) memory.free(address);
+  windows_.clear(), windows_at_.clear();
 }
 
 void check_part(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize range) {

@@ -61,6 +61,7 @@ Stored stored_from(const VkDescriptorGetInfoEXT& info) {
 
 void unpack(const Stored& from, DescriptorKind kind, Descriptor& to) {
   if (from.type_plus_one == 0 || kind_of(VkDescriptorType(from.type_plus_one - 1)) != kind) return;
+  to.is_null = from.first == 0;
   switch (kind) {
     case DescriptorKind::PlainBuffer:
     case DescriptorKind::TexelBuffer:

@@ -52,19 +52,22 @@ void write_one(Cursor& cursor, VkDescriptorType type, const void* info) {
   if (kind == DescriptorKind::PlainBuffer) {
     const auto& from = *static_cast<const VkDescriptorBufferInfo*>(info);
     to.buffer = from.buffer, to.offset = from.offset, to.range = from.range;
+    to.is_null = !from.buffer;
     return;
   }
   if (kind == DescriptorKind::TexelBuffer) {
     to.texels = *static_cast<const VkBufferView*>(info);
+    to.is_null = !to.texels;
     return;
   }
   if (kind == DescriptorKind::AccelerationStructure) {
     const auto from = *static_cast<const VkAccelerationStructureKHR*>(info);
     to.structure = from ? from->address : 0;
+    to.is_null = !from;
     return;
   }
   const auto& from = *static_cast<const VkDescriptorImageInfo*>(info);
-  if (kind == DescriptorKind::Image) to.view = from.imageView;
+  if (kind == DescriptorKind::Image) to.view = from.imageView, to.is_null = !from.imageView;
   if (has_sampler(type) && !cursor.has_immutable_sampler()) to.sampler = from.sampler;
 }
 

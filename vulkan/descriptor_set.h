@@ -23,6 +23,9 @@ struct Descriptor {
   // Names bytes instead of `buffer` or `texels` where descriptors lie in memory.
   Address address = 0;
   VkFormat format = VK_FORMAT_UNDEFINED;  // of texels at `address`
+  // The application wrote VK_NULL_HANDLE. With the feature nullDescriptor this is a descriptor of nothing,
+  // and otherwise the same as one that was never written.
+  bool is_null = false;
 };
 
 // Says what descriptors of a type refer to.

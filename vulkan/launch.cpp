@@ -85,8 +85,8 @@ void launch_with(Queue& queue, const Bindings& bound, LaunchOf launch, SetSize&&
   builder.set_push_constants(bound.push_constants);
   exec::PrintLog prints;
   builder.world.prints = &prints;
-  builder.world.robust_buffers = device.has("robustBufferAccess");
-  builder.world.robust_images = device.has("robustImageAccess");
+  builder.world.robust_buffers = device.has("robustBufferAccess") || device.has("robustBufferAccess2");
+  builder.world.robust_images = device.has("robustImageAccess") || device.has("robustImageAccess2");
   builder.world.on_fault = device.physical.instance.settings.on_fault;
   if (!set_size(builder)) return;
   const uint32_t need = device.physical.gpu.rt.unit == rt::kSoftware ? stack_need(device) : 0;

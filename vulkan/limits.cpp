@@ -256,6 +256,8 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
   p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
   p.minImportedHostPointerAlignment = kHostPointerAlignment;
   p.maxCustomBorderColorSamplers = kManyDescriptors;
+  // Windows end where ranges end, to the byte.
+  p.robustStorageBufferAccessSizeAlignment = p.robustUniformBufferAccessSizeAlignment = 1;
   p.filterMinmaxSingleComponentFormats = p.filterMinmaxImageComponentMapping = VK_TRUE;
   return p;
 }

@@ -65,6 +65,9 @@ class BufferParts {
  public:
   // Returns the address of a part, whose end is the part's end. It holds until forget() or trim().
   Address open(mem::AddressSpace& memory, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize bytes);
+  // Does the same for bytes that only their address names. Where the address or the end is in no allocation,
+  // it returns the address.
+  Address open(mem::AddressSpace& memory, Address address, uint64_t bytes);
   // Closes the windows on a buffer.
   void forget(mem::AddressSpace& memory, const Buffer& buffer);
   // Closes all windows when they are many: the address space has few places, and an application may have more
@@ -77,7 +80,13 @@ class BufferParts {
     VkDeviceSize offset, bytes;
     auto operator<=>(const Part&) const = default;
   };
+  struct AddressPart {
+    Address first;
+    uint64_t bytes;
+    auto operator<=>(const AddressPart&) const = default;
+  };
   std::map<Part, Address> windows_;
+  std::map<AddressPart, Address> windows_at_;  // on parts that an address names
 };
 
 // Returns the address of a part of a buffer whose end is the part's end. Throws as bytes_of().

@@ -324,8 +324,8 @@ void copy_memory(ModuleLowering& l, const Instruction& inst, const LoweringRow&)
   l.store(l.pointer(inst.operands[0]), l.load(l.pointer(inst.operands[1])));
 }
 
-// Computes (bytes of the buffer - offset of the array) / stride. The second register pair of the descriptor
-// holds the bytes.
+// Computes (bytes of the buffer - offset of the array) / stride, or 0 where the buffer ends before the array.
+// The second register pair of the descriptor holds the bytes.
 void array_length(ModuleLowering& l, const Instruction& inst, const LoweringRow&) {
   const Pointer p = l.pointer(inst.operands[0]);
   const Decorations& d = l.decorations(p.variable);
@@ -339,8 +339,9 @@ void array_length(ModuleLowering& l, const Instruction& inst, const LoweringRow&
   const uint32_t offset = l.layout().member_offset(p.type, inst.operands[1]);
   const uint32_t stride =
       l.layout().element_stride(l.module().type(p.type).members.at(inst.operands[1]).type, {});
-  l.set(inst.result, {l.emit().value("div.u32", {l.emit().value("sub.u32", {bytes, Operand::value(offset)}),
-                                                 Operand::value(stride)})});
+  Operand before = Operand::value(offset), behind = bytes;
+  if (offset) behind = l.emit().value("sub.u32", {l.emit().value("max.u32", {bytes, before}), before});
+  l.set(inst.result, {l.emit().value("div.u32", {behind, Operand::value(stride)})});
 }
 
 using enum spv::Op;

@@ -260,8 +260,9 @@ ComputePipeline Client::pipeline(const std::string& glsl, const PipelineOptions&
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < options.bindings.size(); ++i) {
     const bool is_inline = options.bindings[i] == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
+    const uint32_t count = options.counts.empty() ? 1 : options.counts[i];
     bindings.push_back({options.numbers.empty() ? i : options.numbers[i], options.bindings[i],
-                        is_inline ? options.inline_bytes : 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+                        is_inline ? options.inline_bytes : count, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   }
   VkDescriptorSetLayoutCreateInfo sets{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr,
                                        options.set_flags, uint32_t(bindings.size()), bindings.data()};

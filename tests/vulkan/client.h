@@ -46,6 +46,7 @@ struct PipelineOptions {
   uint32_t inline_bytes = 0;        // of each inline uniform block
   std::vector<uint32_t> numbers{};  // of the bindings; empty: from 0 on
   VkPipelineCreateFlags flags = 0;
+  std::vector<uint32_t> counts{};  // descriptors of the bindings; empty: one each
 };
 
 // Holds an instance with a messenger, a device and a command pool. Everything that it made ends with it.
