@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace glint::pipeline {
 namespace {
@@ -71,7 +72,23 @@ void DeviceGeometry::add(const DeviceTriangles& from) {
                                    level_.geometries.size(),
                                    memory_->explain(from.transform, sizeof geometry.transform)));
   }
+  if (from.micromaps) {
+    TakenMicromaps taken = take_micromaps(*from.micromaps, from.count);
+    if (taken.unread)
+      notes_.push_back(fmt::format(
+          "geometry {}: {} triangles have no micromap, because their index or their map is not there",
+          level_.geometries.size(), taken.unread));
+    taken_.emplace_back(level_.geometries.size(), std::move(taken));
+  }
   level_.geometries.push_back(geometry);
+}
+
+void DeviceGeometry::finish() {
+  rt::MicromapFormat format{true, 0};
+  for (const auto& [geometry, taken] : taken_)
+    for (const TakenMicromaps::Map& each : taken.maps) format = common_format(format, each.format);
+  for (const auto& [geometry, taken] : taken_)
+    level_.geometries[geometry].micromaps = &micromaps_.emplace_back(in_format(taken, format));
 }
 
 void DeviceGeometry::add(const DeviceBoxes& from) {

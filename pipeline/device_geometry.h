@@ -7,10 +7,12 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exec/texture_format.h"
 #include "memsys/address_space.h"
+#include "pipeline/device_micromaps.h"
 #include "rtunit/structure/build.h"
 
 namespace glint::pipeline {
@@ -29,6 +31,7 @@ struct DeviceTriangles {
   Address transform = 0;      // row-major 3x4; 0: there is none
   uint32_t count = 0;         // triangles
   bool opaque = true, no_duplicate_any_hit = false;
+  std::optional<DeviceMicromaps> micromaps{};
 };
 
 // Corresponds to VkAccelerationStructureGeometryAabbsDataKHR with its range.
@@ -48,6 +51,9 @@ class DeviceGeometry {
 
   void add(const DeviceTriangles& triangles);
   void add(const DeviceBoxes& boxes);
+  // Writes the micromaps of all geometries in one format, after the last add(). Choice: a structure has maps
+  // of one format, into which coarser maps and those with fewer states are written without a loss.
+  void finish();
 
   // Returns the geometries in the order in which they came. They live as long as this object.
   const rt::BottomLevel& level() const { return level_; }
@@ -66,6 +72,8 @@ class DeviceGeometry {
   rt::BottomLevel level_;
   std::deque<std::vector<Position>> positions_;  // of each geometry of triangles
   std::deque<std::vector<rt::Bounds>> boxes_;
+  std::vector<std::pair<size_t, TakenMicromaps>> taken_;  // by the number of their geometry
+  std::deque<rt::Micromaps> micromaps_;
   std::vector<std::string> notes_;
 };
 

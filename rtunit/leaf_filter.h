@@ -39,6 +39,8 @@ struct LeafAnswer {
 // The traversal asks the filter about each triangle that is met within the ray's interval, is nearer than the
 // hit so far, and is not opaque by its geometry, its instance and the ray. What is forced to be opaque stays
 // so. Where the ray or the instance forces triangles not to be opaque, an opaque answer counts as unknown.
+// Where the maps of a structure come first (Micromaps::come_first), it asks about all triangles, and
+// instances and rays override the answers but for transparent ones. Instances can disable all of this.
 //
 // Contract (tests/contract/rt_leaf_filter_test.cpp):
 //  - look_up() depends on the question and on memory alone: one object serves all cores.
@@ -49,7 +51,8 @@ struct LeafAnswer {
 class LeafFilter {
  public:
   static constexpr PolicyKind kKind{"rt.leaf_filter", "rtunit/leaf_filters"};
-  static constexpr std::string_view kNone = "none";  // Under this name the traversal asks nobody.
+  static constexpr std::string_view kNone = "none";       // Under this name the traversal asks nobody.
+  static constexpr const char* kMicromaps = "micromaps";  // is what reads opacity micromaps
   struct Context {
     stats::Group* stats = nullptr;  // parent for a policy's own statistics; may be null
     const mem::AddressSpace& memory;

@@ -23,42 +23,15 @@
 #include "base/diagnostics.h"
 #include "base/file_store.h"
 #include "base/regular_file.h"
+#include "setup/capsule_structures.h"
 
 namespace glint::setup {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using pipeline::Capsule;
 
 constexpr std::string_view kMark = "glint capsule ";
 constexpr std::string_view kHead = "glint capsule 2\n";
-constexpr const char* kDamaged = "the capsule is damaged";
-
-// Gathers the bytes that stand behind the description.
-class Blobs {
- public:
-  template <class T>
-  Json add(std::span<const T> values) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const size_t at = bytes_.size();
-    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-    return {at, values.size_bytes()};
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-// Throws when a description names bytes that are not there.
-template <class T>
-std::vector<T> blob(std::string_view blobs, const Json& place) {
-  const uint64_t at = place.at(0), bytes = place.at(1);
-  if (at > blobs.size() || bytes > blobs.size() - at || bytes % sizeof(T)) throw std::out_of_range(kDamaged);
-  std::vector<T> out(bytes / sizeof(T));
-  if (bytes) std::memcpy(out.data(), blobs.data() + at, bytes);
-  return out;
-}
 
 // JSON has no infinity, so floats are kept as bits.
 uint32_t bits_of(float value) {
@@ -152,44 +125,6 @@ pipeline::BoundResources bound_of(const Json& json) {
     auto& to = out.elements.emplace<std::vector<exec::Sampler>>();
     for (const Json& each : json.at("samplers")) to.push_back(sampler_of(each));
   }
-  return out;
-}
-
-Json json_of(const pipeline::PlacedStructure& structure, Blobs& blobs) {
-  Json out = {{"name", structure.name}, {"address", structure.address}, {"room", structure.room}};
-  if (!structure.inputs) return out;
-  const pipeline::StructureInputs& inputs = *structure.inputs;
-  if (inputs.is_top) {
-    out["instances"] = blobs.add(std::span(inputs.instances));
-    return out;
-  }
-  Json geometries = Json::array();
-  for (const auto& each : inputs.geometries)
-    geometries.push_back({{"positions", blobs.add(std::span(each.positions))},
-                          {"indices", blobs.add(std::span(each.indices))},
-                          {"boxes", blobs.add(std::span(each.boxes))},
-                          {"transform", blobs.add(std::span<const float>(each.transform))},
-                          {"flags", {each.opaque, each.no_duplicate_any_hit}}});
-  out["geometries"] = geometries;
-  return out;
-}
-pipeline::PlacedStructure structure_of(const Json& json, std::string_view blobs) {
-  pipeline::PlacedStructure out{json.at("name"), json.at("address"), json.at("room"), nullptr};
-  auto inputs = std::make_shared<pipeline::StructureInputs>();
-  inputs->is_top = json.contains("instances");
-  if (inputs->is_top) inputs->instances = blob<rt::DeviceInstance>(blobs, json["instances"]);
-  if (json.contains("geometries"))
-    for (const Json& each : json["geometries"]) {
-      const std::vector<float> transform = blob<float>(blobs, each.at("transform"));
-      auto& to = inputs->geometries.emplace_back();
-      to.positions = blob<float>(blobs, each.at("positions"));
-      to.indices = blob<uint32_t>(blobs, each.at("indices"));
-      to.boxes = blob<rt::Bounds>(blobs, each.at("boxes"));
-      if (transform.size() != to.transform.size()) throw std::out_of_range(kDamaged);
-      std::copy(transform.begin(), transform.end(), to.transform.begin());
-      to.opaque = each.at("flags").at(0), to.no_duplicate_any_hit = each.at("flags").at(1);
-    }
-  if (inputs->is_top || json.contains("geometries")) out.inputs = std::move(inputs);
   return out;
 }
 
@@ -290,6 +225,7 @@ Json description_of(const Capsule& capsule, Blobs& blobs) {
           {"bindings", bindings},
           {"push_constants", blobs.add(std::span(capsule.push_constants))},
           {"robust", {capsule.robust_buffers, capsule.robust_images}},
+          {"micromaps", capsule.has_micromaps},
           {"stack_need", capsule.stack_need},
           {"structures", structures},
           {"memory", json_of(capsule.memory, blobs)}};
@@ -311,6 +247,7 @@ Capsule capsule_of(const Json& json, std::string_view blobs) {
   if (!json.at("rays").is_null()) out.rays = rays_of(json["rays"]);
   for (const Json& each : json.at("bindings")) out.bindings.push_back(bound_of(each));
   out.push_constants = blob<std::byte>(blobs, json.at("push_constants"));
+  out.has_micromaps = json.value("micromaps", false);
   out.robust_buffers = json.at("robust").at(0), out.robust_images = json.at("robust").at(1);
   out.stack_need = json.at("stack_need");
   for (const Json& each : json.at("structures")) out.structures.push_back(structure_of(each, blobs));

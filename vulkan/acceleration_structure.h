@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "rtunit/structure/build.h"
 #include "vulkan/handles.h"
 #include "vulkan/memory.h"
+#include "vulkan/micromap.h"
 
 struct VkAccelerationStructureKHR_T {
   std::string name;
@@ -48,6 +50,7 @@ struct BuildInput {
   Structure* to = nullptr;
   std::vector<VkAccelerationStructureGeometryKHR> geometries;
   std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;  // one for each geometry
+  std::vector<std::optional<GeometryMicromaps>> micromaps;       // one for each geometry
 };
 
 // Copies what a build was asked for. Without `ranges` they come later. Throws Refusal for geometries that do
@@ -61,6 +64,9 @@ void check_room(const Device& device, const BuildInput& input);
 // Builds a structure. What cannot be read or reached is inactive and noted. Throws Refusal or UserError when
 // there can be no structure.
 void build(Device& device, const BuildInput& input);
+
+// Returns the result of an operation that might have been deferred. Choice: all of them are done at once.
+VkResult done_at_once(VkDeferredOperationKHR operation);
 
 // Runs a recorded part of a command that may meet structures which are not built or do not fit. It says why,
 // and the queue goes on.

@@ -44,6 +44,7 @@ struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV,
                           VkPhysicalDeviceDescriptorBufferPropertiesEXT,
                           VkPhysicalDeviceRobustness2PropertiesEXT,
+                          VkPhysicalDeviceOpacityMicromapPropertiesEXT,
                           VkPhysicalDeviceCustomBorderColorPropertiesEXT {
   // The structures of 1.1 rename these.
   VkShaderStageFlags supportedStages = 0;

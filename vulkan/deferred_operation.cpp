@@ -1,10 +1,15 @@
 // Makes deferred operations. What may be deferred is done at once, so nothing is ever left to join.
 // SPDX-License-Identifier: Apache-2.0
+#include "vulkan/acceleration_structure.h"
 #include "vulkan/device.h"
 
 struct VkDeferredOperationKHR_T {};
 
 namespace glint::vulkan {
+
+VkResult done_at_once(VkDeferredOperationKHR operation) {
+  return operation ? VK_OPERATION_NOT_DEFERRED_KHR : VK_SUCCESS;
+}
 
 VkResult CreateDeferredOperationKHR(Device&, VkDeferredOperationKHR* out) {
   *out = new VkDeferredOperationKHR_T;

@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "vulkan/chain.h"
 
@@ -12,14 +15,32 @@ namespace glint::vulkan {
 namespace {
 
 // Notes the features that a structure asks for. Throws Refusal when the device does not have one.
-void ask_for(Device& device, VkStructureType type, const void* members) {
+void ask_for(const PhysicalDevice& device, VkStructureType type, const void* members,
+             std::set<std::string_view>& features) {
   auto* asked = static_cast<const VkBool32*>(members);
   for (const Feature& each : features_of(type)) {
     if (!*asked++) continue;
-    if (!announces(device.physical, each))
+    if (!announces(device, each))
       throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, fmt::format("the device has no feature {}", each.name));
-    device.features.insert(each.name);
+    features.insert(each.name);
   }
+}
+
+std::set<std::string_view> asked_features(const PhysicalDevice& device, const VkDeviceCreateInfo& info) {
+  std::set<std::string_view> out;
+  if (info.pEnabledFeatures)
+    ask_for(device, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, info.pEnabledFeatures, out);
+  for (auto* each = static_cast<const VkBaseInStructure*>(info.pNext); each; each = each->pNext)
+    ask_for(device, each->sType, each + 1, out);
+  return out;
+}
+
+// Returns the machine of a device. With micromaps its RT units ask the filter that reads them.
+pipeline::GpuParams machine_of(const PhysicalDevice& device, const std::set<std::string_view>& features) {
+  pipeline::GpuParams out = device.gpu;
+  if (features.count("micromap") && out.rt.leaf_filter.name == rt::LeafFilter::kNone)
+    out.rt.leaf_filter = rt::LeafFilter::kMicromaps;
+  return out;
 }
 
 }  // namespace
@@ -39,13 +60,11 @@ void VkDevice_T::advance() {
 namespace glint::vulkan {
 
 VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, VkDevice* out) {
-  auto made = std::make_unique<Device>(physical);
+  std::set<std::string_view> features = asked_features(physical, *info);
+  auto made = std::make_unique<Device>(physical, machine_of(physical, features));
+  made->features = std::move(features);
   made->extensions = enabled_extensions(device_extensions(), info->ppEnabledExtensionNames,
                                         info->enabledExtensionCount, "device");
-  if (info->pEnabledFeatures)
-    ask_for(*made, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, info->pEnabledFeatures);
-  for (auto* each = static_cast<const VkBaseInStructure*>(info->pNext); each; each = each->pNext)
-    ask_for(*made, each->sType, each + 1);
   if (physical.instance.settings.is_universal)
     made->messages().warning("GLINT_VK_QUEUE is universal: the device announces graphics and has none of it");
   *out = made.release();

@@ -24,11 +24,13 @@
 #include "vulkan/recording.h"
 
 struct VkDevice_T : glint::vulkan::Dispatchable {
-  explicit VkDevice_T(VkPhysicalDevice_T& of)
+  // `machine` is the physical device's, with what the application's features add to it.
+  VkDevice_T(VkPhysicalDevice_T& of, const glint::pipeline::GpuParams& machine)
       : physical(of),
-        clock(of.gpu),
-        recording(of.instance.settings, of.instance.messages, clock),
-        gpu(of.gpu) {
+        params(machine),
+        clock(params),
+        recording(of.instance.settings, params, of.instance.messages, clock),
+        gpu(params) {
     const size_t families = glint::vulkan::queue_families(of.instance.settings.is_universal).size();
     for (size_t i = 0; i < families * glint::vulkan::kQueues; ++i) queues.emplace_back(*this);
   }
@@ -45,6 +47,7 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   bool has(std::string_view feature) const { return features.count(feature) != 0; }
 
   VkPhysicalDevice_T& physical;
+  const glint::pipeline::GpuParams params;
   std::mutex mutex;  // A command that is given this device, or one of its queues, holds it (guard.h).
   std::condition_variable_any changed;  // Something that the host may wait for has changed.
   std::set<std::string_view> features;
@@ -58,8 +61,8 @@ struct VkDevice_T : glint::vulkan::Dispatchable {
   std::unordered_set<const void*> bindable;
   std::vector<VkAccelerationStructureKHR> unplaced_structures;  // Their buffers have no memory yet.
   // They give objects names.
-  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, ray_pipelines_made = 0,
-           graphics_pipelines_made = 0;
+  uint32_t buffers_made = 0, images_made = 0, shaders_made = 0, structures_made = 0, micromaps_made = 0,
+           ray_pipelines_made = 0, graphics_pipelines_made = 0;
   glint::vulkan::DeviceClock clock;
   glint::vulkan::Recording recording;
   glint::pipeline::Device gpu;  // runs launches

@@ -52,6 +52,7 @@ void begin_capsule(pipeline::Capsule& capsule, Device& device, const Bindings& b
   }
   capsule.push_constants.assign(bound.push_constants.begin(), bound.push_constants.end());
   capsule.robust_buffers = world.robust_buffers, capsule.robust_images = world.robust_images;
+  capsule.has_micromaps = device.has("micromap");
   capsule.structure_format = pipeline::structure_format(device.physical.gpu.bvh);
   capsule.stack_need = stack_need(device);
   std::map<Address, const Structure*> newest;  // Several structures may have been built at one address.
@@ -87,6 +88,8 @@ void launch_with(Queue& queue, const Bindings& bound, LaunchOf launch, SetSize&&
   builder.world.prints = &prints;
   builder.world.robust_buffers = device.has("robustBufferAccess") || device.has("robustBufferAccess2");
   builder.world.robust_images = device.has("robustImageAccess") || device.has("robustImageAccess2");
+  if (device.has("micromap"))
+    builder.world.filter = device.params.rt.leaf_filter.make({nullptr, device.memory});
   builder.world.on_fault = device.physical.instance.settings.on_fault;
   if (!set_size(builder)) return;
   const uint32_t need = device.physical.gpu.rt.unit == rt::kSoftware ? stack_need(device) : 0;

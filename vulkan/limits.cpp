@@ -9,6 +9,7 @@
 #include "exec/block.h"
 #include "isa/descriptors.h"
 #include "pipeline/binding_table.h"
+#include "rtunit/structure/micromaps.h"
 #include "vulkan/descriptor_buffer.h"
 #include "vulkan/image.h"
 #include "vulkan/instance.h"
@@ -200,6 +201,7 @@ void set_acceleration_structures(DeviceProperties& p) {
         &p.maxDescriptorSetAccelerationStructures, &p.maxDescriptorSetUpdateAfterBindAccelerationStructures})
     *limit = kManyDescriptors;
   p.minAccelerationStructureScratchOffsetAlignment = 64;
+  p.maxOpacity2StateSubdivisionLevel = p.maxOpacity4StateSubdivisionLevel = rt::MicromapFormat::kMostLevels;
 }
 
 void set_ray_pipelines(DeviceProperties& p, const pipeline::GpuParams& gpu) {
@@ -254,10 +256,10 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
   p.maxTimelineSemaphoreValueDifference = (uint64_t{1} << 63) - 1;
   p.storageTexelBufferOffsetAlignmentBytes = p.uniformTexelBufferOffsetAlignmentBytes = 16;
   p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
-  p.minImportedHostPointerAlignment = kHostPointerAlignment;
-  p.maxCustomBorderColorSamplers = kManyDescriptors;
   // Windows end where ranges end, to the byte.
   p.robustStorageBufferAccessSizeAlignment = p.robustUniformBufferAccessSizeAlignment = 1;
+  p.minImportedHostPointerAlignment = kHostPointerAlignment;
+  p.maxCustomBorderColorSamplers = kManyDescriptors;
   p.filterMinmaxSingleComponentFormats = p.filterMinmaxImageComponentMapping = VK_TRUE;
   return p;
 }

@@ -34,7 +34,9 @@ VkResult EnumerateDeviceLayerProperties(PhysicalDevice&, uint32_t* count, VkLaye
   return VK_SUCCESS;
 }
 
+// Walking rays in code asks no filter, so it knows no micromaps.
 bool announces(const PhysicalDevice& device, const Feature& feature) {
+  if (feature.name.starts_with("micromap") && device.gpu.rt.unit == rt::kSoftware) return false;
   return device.instance.settings.is_universal ? feature.with_graphics : feature.announced;
 }
 

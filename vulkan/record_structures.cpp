@@ -17,11 +17,6 @@
 namespace glint::vulkan {
 namespace {
 
-// Choice: deferred operations are done at once.
-VkResult done(VkDeferredOperationKHR operation) {
-  return operation ? VK_OPERATION_NOT_DEFERRED_KHR : VK_SUCCESS;
-}
-
 // Model: copies and queries of structures take the time of a transfer of their bytes.
 void copy(Device& device, Structure* from, Structure* to) {
   const auto info = rt::structure_at(device.memory, from->address);
@@ -137,7 +132,7 @@ VkResult BuildAccelerationStructuresKHR(Device& device, VkDeferredOperationKHR o
                                         const VkAccelerationStructureBuildGeometryInfoKHR* infos,
                                         const VkAccelerationStructureBuildRangeInfoKHR* const* ranges) {
   for (uint32_t i = 0; i < count; ++i) build(device, input_of(infos[i], ranges[i], true));
-  return done(operation);
+  return done_at_once(operation);
 }
 
 void CmdCopyAccelerationStructureKHR(CommandBuffer& commands,
@@ -149,7 +144,7 @@ void CmdCopyAccelerationStructureKHR(CommandBuffer& commands,
 VkResult CopyAccelerationStructureKHR(Device& device, VkDeferredOperationKHR operation,
                                       const VkCopyAccelerationStructureInfoKHR* info) {
   copy(device, info->src, info->dst);
-  return done(operation);
+  return done_at_once(operation);
 }
 
 void CmdCopyAccelerationStructureToMemoryKHR(CommandBuffer& commands,
@@ -174,7 +169,7 @@ VkResult CopyAccelerationStructureToMemoryKHR(Device& device, VkDeferredOperatio
     Structure* const found = find_structure(device, address);
     return found ? reinterpret_cast<uint64_t>(found) : address;
   });
-  return done(operation);
+  return done_at_once(operation);
 }
 
 void CmdCopyMemoryToAccelerationStructureKHR(CommandBuffer& commands,
@@ -200,7 +195,7 @@ VkResult CopyMemoryToAccelerationStructureKHR(Device& device, VkDeferredOperatio
     return address ? address : handle;
   });
   deserialize(device, copied, info->dst);
-  return done(operation);
+  return done_at_once(operation);
 }
 
 void CmdWriteAccelerationStructuresPropertiesKHR(CommandBuffer& commands, uint32_t count,

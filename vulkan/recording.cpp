@@ -85,20 +85,22 @@ bool claim(const std::string& folder, const std::string& index) {
 
 }  // namespace
 
-Recording::Recording(const Settings& settings, const Messages& messages, DeviceClock& clock)
+Recording::Recording(const Settings& settings, const pipeline::GpuParams& machine, const Messages& messages,
+                     DeviceClock& clock)
     : settings_(settings),
+      machine_(machine),
       messages_(messages),
       clock_(clock),
       is_on_(!settings.out.empty() || !settings.timing.is_empty() || settings.asks_for_pictures ||
              !settings.save.is_empty()) {
   if (!is_on_) return;
-  const report::RunInfo info = setup::new_run_info(settings.gpu, settings.preset, "timing");
+  const report::RunInfo info = setup::new_run_info(machine, settings.preset, "timing");
   facts_.command = command_of_process();
   facts_.program = program_of_process();
   facts_.version = info.version, facts_.git = info.git, facts_.started = info.started;
   facts_.config = settings.preset, facts_.timing = settings.timing_text;
   facts_.process = uint64_t(::getpid());
-  facts_.clock_mhz = settings.gpu.clock_mhz;
+  facts_.clock_mhz = machine.clock_mhz;
   OpenRecordings::instance().add(this);
 }
 
@@ -295,7 +297,7 @@ void Recording::run_in(const std::string& folder, report::DeviceCommand& command
   bool has_begun = false, has_ended = false;
   try {
     report::RunDirectory directory(folder);
-    report::RunInfo info = setup::new_run_info(settings_.gpu, settings_.preset, "timing");
+    report::RunInfo info = setup::new_run_info(machine_, settings_.preset, "timing");
     info.command = facts_.command;
     info.scene = fmt::format("{} {} {}", facts_.program, command.kind, command.number);
     info.scene_form = "application", info.scene_note = command.label;
@@ -303,7 +305,7 @@ void Recording::run_in(const std::string& folder, report::DeviceCommand& command
     info.shader = command.shader, info.compact = settings_.is_compact;
     info.frame[0].second = timed.threads[0], info.frame[1].second = timed.threads[1];
     info.on_fault = exec::name_of(settings_.on_fault);
-    setup::begin_directory(directory, info, settings_.gpu,
+    setup::begin_directory(directory, info, machine_,
                            fmt::format("{}: {}  {} x {} x {} threads, timing on {}", info.scene, info.shader,
                                        timed.threads[0], timed.threads[1], timed.threads[2], info.config));
     has_begun = true;

@@ -31,7 +31,8 @@ struct ShownImage {
 // is said once, and the application goes on without.
 class Recording {
  public:
-  Recording(const Settings& settings, const Messages& messages, DeviceClock& clock);
+  Recording(const Settings& settings, const pipeline::GpuParams& machine, const Messages& messages,
+            DeviceClock& clock);
   ~Recording();  // writes the index for the last time
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
@@ -77,6 +78,7 @@ class Recording {
   void run_in(const std::string& folder, report::DeviceCommand& command, const Timed& timed);
 
   const Settings& settings_;
+  const pipeline::GpuParams& machine_;
   const Messages& messages_;
   DeviceClock& clock_;
   mutable std::mutex mutex_;  // `facts_.refused`, which any thread may add to

@@ -49,8 +49,9 @@ void set_flags(const From& from, To& to) {
 }
 
 // A pointer of the host and an address of the device have the same bits in their union.
-pipeline::DeviceTriangles triangles_of(const VkAccelerationStructureGeometryKHR& geometry,
-                                       const VkAccelerationStructureBuildRangeInfoKHR& range) {
+pipeline::DeviceTriangles triangles_of(const Device& device, const BuildInput& input, size_t number) {
+  const VkAccelerationStructureGeometryKHR& geometry = input.geometries[number];
+  const VkAccelerationStructureBuildRangeInfoKHR& range = input.ranges[number];
   const VkAccelerationStructureGeometryTrianglesDataKHR& from = geometry.geometry.triangles;
   pipeline::DeviceTriangles to;
   if (from.vertexFormat != VK_FORMAT_R32G32B32_SFLOAT) to.format = texel_format_of(from.vertexFormat);
@@ -63,6 +64,8 @@ pipeline::DeviceTriangles triangles_of(const VkAccelerationStructureGeometryKHR&
     to.transform = from.transformData.deviceAddress + range.transformOffset;
   to.count = range.primitiveCount;
   set_flags(geometry, to);
+  if (const auto& micromaps = input.micromaps[number])
+    to.micromaps = device_micromaps(device, *micromaps, input.on_host);
   return to;
 }
 
@@ -87,10 +90,11 @@ rt::EncodedStructure encode_bottom(Device& device, const BuildInput& input, std:
       input.on_host ? pipeline::DeviceGeometry() : pipeline::DeviceGeometry(device.memory);
   for (size_t i = 0; i < input.geometries.size(); ++i) {
     if (input.geometries[i].geometryType == VK_GEOMETRY_TYPE_TRIANGLES_KHR)
-      geometry.add(triangles_of(input.geometries[i], input.ranges[i]));
+      geometry.add(triangles_of(device, input, i));
     else
       geometry.add(boxes_of(input.geometries[i], input.ranges[i]));
   }
+  geometry.finish();
   notes = geometry.notes();
   if (keeps_inputs(device)) input.to->inputs = pipeline::inputs_of(geometry.level());
   return rt::encode_bottom(input.to->name, geometry.level(), device.physical.gpu.bvh,
@@ -159,6 +163,8 @@ BuildInput input_of(const VkAccelerationStructureBuildGeometryInfoKHR& info,
     throw Refusal("a build has neither pGeometries nor ppGeometries");
   for (uint32_t i = 0; i < info.geometryCount; ++i)
     out.geometries.push_back(info.pGeometries ? info.pGeometries[i] : *info.ppGeometries[i]);
+  for (const VkAccelerationStructureGeometryKHR& each : out.geometries)
+    out.micromaps.push_back(micromaps_of(each));
   if (ranges) out.ranges.assign(ranges, ranges + info.geometryCount);
   const bool needs_instances = info.type == VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
   if (needs_instances && out.geometries.size() != 1)
@@ -170,7 +176,8 @@ BuildInput input_of(const VkAccelerationStructureBuildGeometryInfoKHR& info,
 }
 
 uint64_t most_bytes_of(const Device& device, const BuildInput& input, uint64_t primitives) {
-  return rt::most_bytes(is_top(input) ? 1 : 0, primitives, device.physical.gpu.bvh);
+  return rt::most_bytes(is_top(input) ? 1 : 0, primitives, device.physical.gpu.bvh) +
+         most_bytes_of(input.micromaps);
 }
 
 void check_room(const Device& device, const BuildInput& input) {
@@ -204,8 +211,10 @@ void build(Device& device, const BuildInput& input) {
       is_top(input) ? encode_top(device, input, notes) : encode_bottom(device, input, notes);
   say_notes(device, input.to->name, notes);
   if (made.bytes.size() > input.to->bytes)
-    throw Refusal(fmt::format("the updated structure has {} bytes, and '{}' has room for {}",
-                              made.bytes.size(), input.to->name, input.to->bytes));
+    throw Refusal(
+        fmt::format("the structure has {} bytes, and '{}' has room for {}: it is updated with more, "
+                    "or its micromaps are others than pUsageCounts says",
+                    made.bytes.size(), input.to->name, input.to->bytes));
   rt::write_structure(device.memory, made, input.to->address);
   input.to->built = ++device.builds;
   input.to->update_bytes = input.allows_update ? most_bytes_of(device, input, primitives_of(input)) : 0;

@@ -24,6 +24,7 @@ struct StructureInputs {
     std::vector<rt::Bounds> boxes;
     std::array<float, 12> transform = rt::kIdentity;
     bool opaque = true, no_duplicate_any_hit = false;
+    std::optional<rt::Micromaps> micromaps;
   };
   bool is_top = false;
   std::vector<Geometry> geometries;           // of a bottom level
@@ -93,7 +94,8 @@ struct Capsule {
   std::vector<BoundResources> bindings;
   std::vector<std::byte> push_constants;
   bool robust_buffers = false, robust_images = false;
-  uint32_t stack_need = 0;  // stack entries that the worst ray needs in any structure of the application
+  bool has_micromaps = false;  // Rays ask the leaf filter that reads opacity micromaps.
+  uint32_t stack_need = 0;     // stack entries that the worst ray needs in any structure of the application
   std::vector<PlacedStructure> structures;
   SavedMemory memory;
 };

@@ -24,6 +24,7 @@ rt::BottomLevel level_of(const StructureInputs& inputs) {
     to.positions = std::as_bytes(std::span(each.positions));
     to.indices = each.indices, to.aabbs = each.boxes, to.transform = each.transform;
     to.opaque = each.opaque, to.no_duplicate_any_hit = each.no_duplicate_any_hit;
+    to.micromaps = each.micromaps ? &*each.micromaps : nullptr;
   }
   return out;
 }
@@ -43,6 +44,7 @@ std::shared_ptr<const StructureInputs> inputs_of(const rt::BottomLevel& level) {
     to.boxes.assign(each.aabbs.begin(), each.aabbs.end());
     to.transform = each.transform, to.opaque = each.opaque;
     to.no_duplicate_any_hit = each.no_duplicate_any_hit;
+    if (each.micromaps) to.micromaps = *each.micromaps;
   }
   return out;
 }
@@ -54,6 +56,10 @@ std::string structure_format(const rt::BuildOptions& options) {
 
 CapsuleWorld::CapsuleWorld(const Capsule& capsule, const GpuParams& gpu, frontend::ShaderCache* cache)
     : capsule_(capsule) {
+  if (capsule.has_micromaps && gpu.rt.unit == rt::kSoftware)
+    throw UserError({},
+                    "the application uses opacity micromaps, which rays that are walked in code do not see",
+                    "choose another rt.unit");
   compile(gpu, cache);
   restore_memory(capsule.memory, memory_);
   build_structures(gpu);
@@ -62,6 +68,7 @@ CapsuleWorld::CapsuleWorld(const Capsule& capsule, const GpuParams& gpu, fronten
   builder_->set_push_constants(capsule.push_constants);
   builder_->world.robust_buffers = capsule.robust_buffers;
   builder_->world.robust_images = capsule.robust_images;
+  if (capsule.has_micromaps) builder_->world.filter = gpu.rt.leaf_filter.make({nullptr, memory_});
   if (capsule.rays) {
     set_rays(*capsule.rays);
   } else {

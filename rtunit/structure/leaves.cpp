@@ -62,7 +62,8 @@ class GeometryLeaves {
   uint64_t num_primitives() const { return num_primitives_; }
   uint8_t contents() const {
     if (num_leaves_ == 0) return 0;
-    return !geometry_.aabbs.empty() ? contents::kProcedural : geometry_.opaque ? 0 : contents::kNotOpaque;
+    if (!geometry_.aabbs.empty()) return contents::kProcedural;
+    return geometry_.opaque && !geometry_.micromaps ? 0 : contents::kNotOpaque;
   }
 
   // Writes the leaves from number `first` on.

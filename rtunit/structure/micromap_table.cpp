@@ -72,6 +72,7 @@ std::vector<std::byte> take_micromaps(const BottomLevel& input, Leaves& leaves) 
           index[i] < 0 ? TriangleLeaf::kUniform + uint32_t(-1 - index[i]) : TriangleLeaf::kMapped;
       leaf.opacity = uint8_t(leaf.opacity | code << 3 * i);
     }
+    if (from->come_first) leaf.opacity |= TriangleLeaf::kMapsFirst;
     if (index[0] >= 0 || index[1] >= 0) leaf.primitive[1] = maps.number_of(leaf.geometry, *from, index);
     std::memcpy(at, &leaf, sizeof leaf);
   }

@@ -37,6 +37,9 @@ struct Micromaps {
   // special indices say.
   std::vector<int32_t> index;
   std::vector<uint8_t> states;  // of one map after the other, from the low bits of a byte to the high ones
+  // True: the maps decide before anything else, in place of the geometry's opacity, as in Vulkan. False: they
+  // stand for an any-hit shader, and are asked where it would be.
+  bool come_first = false;
 
   static constexpr int32_t uniform(MicroState state) { return -1 - int32_t(state); }
 };

@@ -94,13 +94,16 @@ struct TriangleLeaf {
   uint32_t geometry = 0;
   uint8_t count = 1;
   uint8_t opaque = 0;
-  uint8_t second = 0;   // 2 bits per corner: the number of its vertex
-  uint8_t opacity = 0;  // 3 bits per triangle: opacity_of()
+  uint8_t second = 0;  // 2 bits per corner: the number of its vertex
+  // 3 bits per triangle: opacity_of(). kMapsFirst says that they stand in place of `opaque`, as in Vulkan.
+  uint8_t opacity = 0;
+  static constexpr uint8_t kMapsFirst = 0x80;
 
   uint32_t primitive_of(uint32_t triangle) const { return primitive[0] + triangle; }
   // Says what is known of a triangle without a shader: kNoOpacity is nothing, kUniform and the three values
   // after it are a MicroState of the whole triangle, and with kMapped the triangle has a map.
   uint32_t opacity_of(uint32_t triangle) const { return opacity >> 3 * triangle & 7; }
+  bool has_maps_first() const { return (opacity & kMapsFirst) != 0; }
   uint32_t map_of(uint32_t triangle) const { return primitive[1] + triangle; }
 };
 static_assert(sizeof(TriangleLeaf) == kLeafBytes);
@@ -135,7 +138,8 @@ static_assert(sizeof(InstanceLeaf) == leaf_bytes(NodeKind::Instance));
 // These are the bits of VkGeometryInstanceFlagBitsKHR.
 namespace instance_flag {
 inline constexpr uint32_t kFacingCullDisable = 0x1, kFlipFacing = 0x2, kForceOpaque = 0x4,
-                          kForceNoOpaque = 0x8;
+                          kForceNoOpaque = 0x8, kForceMicromaps2State = 0x10,
+                          kDisableMicromaps = 0x20;  // VK_EXT_opacity_micromap
 }
 
 }  // namespace glint::rt

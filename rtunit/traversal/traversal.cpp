@@ -67,20 +67,40 @@ bool is_opaque(const RayState& s, bool geometry_opaque) {
   if (has(s, ray_flag::kNoOpaque)) opaque = false;
   return opaque;
 }
-// Asks the filter, if there is one, about the ray's candidate, which is not opaque.
-// Choice: what is forced to be opaque is so where its map is transparent, too, and culling by opacity goes by
-// the geometry, so that maps with 4 states change no picture. Vulkan lets the map come first.
-Opacity filtered(const RayState& s, const TriangleLeaf& leaf, uint32_t number) {
-  if (!s.filter) [[likely]]
-    return Opacity::Unknown;
-  const LeafAnswer answer =
-      s.filter->look_up({leaf, number, s.candidate, s.base, has(s, ray_flag::kForceMicromaps2State)});
-  const bool is_forced = has(s, ray_flag::kNoOpaque) || s.instance_flags & instance_flag::kForceNoOpaque;
-  return answer.opacity == Opacity::Opaque && is_forced ? Opacity::Unknown : answer.opacity;
-}
 
 bool culled_by_opacity(const RayState& s, bool opaque) {
   return has(s, opaque ? ray_flag::kCullOpaque : ray_flag::kCullNoOpaque);
+}
+
+Opacity look_up(const RayState& s, const TriangleLeaf& leaf, uint32_t number) {
+  const bool two_states =
+      has(s, ray_flag::kForceMicromaps2State) || (s.instance_flags & instance_flag::kForceMicromaps2State);
+  return s.filter->look_up({leaf, number, s.candidate, s.base, two_states}).opacity;
+}
+
+// Asks the filter, if there is one, about the ray's candidate, which is not opaque.
+// Choice: what is forced to be opaque is so where its map is transparent, too, and culling by opacity goes by
+// the geometry, so that baked maps with 4 states change no picture. In Vulkan the maps come first.
+Opacity filtered(const RayState& s, const TriangleLeaf& leaf, uint32_t number) {
+  if (!s.filter || (s.instance_flags & instance_flag::kDisableMicromaps)) [[likely]]
+    return Opacity::Unknown;
+  const Opacity opacity = look_up(s, leaf, number);
+  const bool is_forced = has(s, ray_flag::kNoOpaque) || s.instance_flags & instance_flag::kForceNoOpaque;
+  return opacity == Opacity::Opaque && is_forced ? Opacity::Unknown : opacity;
+}
+
+bool has_maps_first(const RayState& s, const TriangleLeaf& leaf) {
+  return leaf.has_maps_first() && s.filter && !(s.instance_flags & instance_flag::kDisableMicromaps);
+}
+
+// Says what becomes of the ray's candidate where maps come first: the ray passes transparent parts whatever
+// is forced, and what a map says stands for the geometry's opacity. Culled ones count as transparent.
+Opacity decided_by_map(const RayState& s, const TriangleLeaf& leaf, uint32_t number) {
+  const Opacity opacity = look_up(s, leaf, number);
+  if (opacity == Opacity::Transparent) return opacity;
+  const bool opaque = is_opaque(s, opacity == Opacity::Opaque);
+  if (culled_by_opacity(s, opaque)) return Opacity::Transparent;
+  return opaque ? Opacity::Opaque : Opacity::Unknown;
 }
 
 Hit candidate_of(const RayState& s, uint32_t geometry, uint32_t primitive) {
@@ -104,8 +124,8 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
   const auto leaf = load<TriangleLeaf>(bytes);
   const bool resumed = kind_of(entry.node) == NodeKind::TriangleSecond;
   if (!resumed) ++s.leaves_visited;
-  const bool opaque = is_opaque(s, leaf.opaque != 0);
-  if (culled_by_opacity(s, opaque)) return;
+  const bool opaque = is_opaque(s, leaf.opaque != 0), maps_first = has_maps_first(s, leaf);
+  if (!maps_first && culled_by_opacity(s, opaque)) return;
   for (uint32_t i = resumed ? 1 : 0; i < leaf.count && i < 2; ++i) {
     const uint32_t a = i ? leaf.second & 3 : 0, b = i ? leaf.second >> 2 & 3 : 1,
                    c = i ? leaf.second >> 4 & 3 : 2;
@@ -124,7 +144,9 @@ void visit_triangles(RayState& s, const std::byte* bytes, const StackEntry& entr
     s.candidate.u = found.u;
     s.candidate.v = found.v;
     s.candidate.kind = front ? kHitKindFront : kHitKindBack;
-    const Opacity opacity = opaque ? Opacity::Opaque : filtered(s, leaf, i);
+    const Opacity opacity = maps_first ? decided_by_map(s, leaf, i)
+                            : opaque   ? Opacity::Opaque
+                                       : filtered(s, leaf, i);
     if (opacity == Opacity::Transparent) continue;
     if (opacity == Opacity::Unknown) {
       s.candidate_procedural = false;

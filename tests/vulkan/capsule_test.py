@@ -102,6 +102,25 @@ class Capsule(VulkanTest):
         self.assertRegex(changed[0].name, r"allocation-\d+\.bin")
         self.assertEqual(struct.unpack("<64I", changed[0].read_bytes()), tuple(i ^ 21 for i in range(64)))
 
+    def test_a_capsule_keeps_micromaps_on_every_node_format_and_null_descriptors(self):
+        capsules, cycles = self.save("[micromaps]", "dispatch 1")  # It asks the shader of unknown parts only.
+        found = []
+        for name, options in (("again", ()), ("bvh8", ("--set", "bvh.format=bvh8")), ("bvh2", ("--set", "bvh.format=bvh2"))):
+            self.replay(capsules[1], "--out", name, *options)
+            found.append((self.folder / name / "set0-binding1.bin").read_bytes())
+        self.assertEqual(self.cycles("again"), cycles[1])
+        words = struct.unpack("<1024I", found[0])
+        asked = [word >> 4 & 15 for word in words]
+        self.assertEqual(set(asked), {0, 1})
+        self.assertEqual(found[1:], found[:1] * 2)
+        said = self.replay(capsules[1], "--set", "rt.unit=software", code=2).stderr
+        self.assertIn("the application uses opacity micromaps", said)
+        (self.folder / "app").rename(self.folder / "maps")
+        capsules, _ = self.save("[nulls]", "dispatch 0")
+        self.replay(capsules[0], "--out", "nothing")
+        data = (self.folder / "nothing/set0-binding0.bin").read_bytes()
+        self.assertEqual(struct.unpack("<22I", data[:88]), (0,) * 20 + (77, 0xdead))
+
     def test_damaged_and_foreign_files_are_refused(self):
         capsules, _ = self.save("[three_launches]", "dispatch 1")
         good = capsules[1].read_bytes()

@@ -1,5 +1,6 @@
 // Tests ray-tracing pipelines, libraries, binding tables and launches of rays over the Vulkan loader.
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 
@@ -152,9 +153,19 @@ TEST_CASE("weights of a triangle reach a shader whose attributes have a third fl
   CHECK(scene.take()[0] % 100 == 70);  // The ray meets the first square at (0.4, 0.3).
 }
 
-TEST_CASE("a ray generation shader keeps hit objects, reorders by them and runs their shaders", "[rays]") {
+TEST_CASE("a ray generation shader keeps hit objects, reorders by them and runs their shaders",
+          "[rays][reordering]") {
   RayPipelineClient client;
   const Scene scene(client);
+  VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV hint{};
+  hint.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_INVOCATION_REORDER_PROPERTIES_NV;
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &hint, {}};
+  vkGetPhysicalDeviceProperties2(client.physical, &all);
+  const char* const keys = std::getenv("GLINT_SET");
+  const bool sorts = keys && std::string(keys).find("core.reorder=sort") != std::string::npos;
+  CHECK(hint.rayTracingInvocationReorderReorderingHint ==
+        (sorts ? VK_RAY_TRACING_INVOCATION_REORDER_MODE_REORDER_NV
+               : VK_RAY_TRACING_INVOCATION_REORDER_MODE_NONE_NV));
   const std::string head = "#version 460\n#extension GL_NV_shader_invocation_reorder : require\n" +
                            kHead.substr(kHead.find('\n') + 1);
 

@@ -52,6 +52,27 @@ class Timing(VulkanTest):
         self.assertEqual(cycles("trace 1-2"), {"trace 2": every["trace 2"]})
         self.assertEqual(cycles("dispatch 0-9"), {"dispatch 1": every["dispatch 1"]})
 
+    def test_a_machine_that_reorders_says_so_and_regroups_warps(self):
+        for keys, batches in (("core.reorder=sort", 1), ("core.reorder=none", 0)):
+            with self.subTest(keys):
+                folder = keys.split("=")[1]
+                result = self.run_on_glint(CLIENT, "[reordering]", GLINT_TIMING="all", GLINT_SET=keys, GLINT_OUT=folder)
+                self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+                lines = (self.folder / folder / "launch-0-trace/stats.csv").read_text().splitlines()
+                regrouped = sum(int(line.split(",")[1]) for line in lines if re.match(r"gpu\.core\[\d+\]\.reorder\.batches,", line))
+                self.assertEqual(regrouped, batches)
+
+    def test_micromaps_decide_the_same_in_the_timing_machine_and_cost_reads(self):
+        result = self.run_on_glint(CLIENT, "[micromaps]", GLINT_TIMING="all", GLINT_OUT="maps")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        reads = []
+        for run in sorted((self.folder / "maps").glob("launch-*"), key=lambda path: int(path.name.split("-")[1])):
+            lines = (run / "stats.csv").read_text().splitlines()
+            reads.append(sum(int(line.split(",")[1]) for line in lines if re.match(r"gpu\.rt_unit\[\d+\]\.rt\.micromaps\.reads,", line)))
+        # The first launch has no maps. Of eight triangles four name one, under 512 of the 1,024 rays, and the last of each
+        # nine launches disables them.
+        self.assertEqual(reads, [0] + 2 * (8 * [512] + [0]))
+
     def test_threads_of_the_host_change_no_cycle(self):
         self.assertEqual(self.cycles(GLINT_TIMING="all", GLINT_THREADS="2"), self.cycles(GLINT_TIMING="all"))
 

@@ -144,6 +144,8 @@ Exit run_capsule(const Session& session, const std::string& what, const LaunchOp
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   pipeline::RenderJob job;
   job.gpu = read_config(session.resources, options.config, options.settings);
+  if (capsule.has_micromaps && job.gpu.rt.leaf_filter.name == rt::LeafFilter::kNone)
+    job.gpu.rt.leaf_filter = rt::LeafFilter::kMicromaps;
   if (options.max_instructions) job.gpu.core.instruction_budget = options.max_instructions;
   job.timing = options.mode == "timing";
   job.no_skip = options.no_skip;

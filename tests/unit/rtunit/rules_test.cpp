@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/registry.h"
+#include "rtunit/leaf_filter.h"
 #include "tests/support/catch.h"
 #include "tests/support/rt_scenes.h"
 
@@ -155,6 +157,53 @@ TEST_CASE("opaque and non-opaque geometry is culled by its final opacity") {
   CHECK(one_triangle(false).shoot(ray_flag::kCullNoOpaque | ray_flag::kOpaque).committed.valid());
   CHECK(one_box(true).shoot(ray_flag::kCullOpaque).status == RayStatus::Done);
   CHECK(one_box(false).shoot(ray_flag::kCullOpaque).status == RayStatus::NeedsIntersection);
+}
+
+// Returns what becomes of a ray that meets a triangle whose map comes first and has one state all over.
+RayState with_map(MicroState map, bool opaque, uint32_t instance_flags, uint32_t ray_flags) {
+  const Positions p = triangle_at(0);
+  Geometry geometry = triangles(p, opaque);
+  const Micromaps maps{{}, {Micromaps::uniform(map)}, {}, true};
+  geometry.micromaps = &maps;
+  const World world({{geometry}}, with_flags(instance_flags));
+  const auto filter =
+      Registry<LeafFilter>::instance().entry("micromaps").make_default({nullptr, world.memory});
+  RayState state = ray_of(world.top.address, {0, 0, 10}, {0, 0, -1}, 0, 100, ray_flags);
+  state.filter = filter.get();
+  REQUIRE(begin(state, world.memory));
+  run(state, world.memory);
+  return state;
+}
+
+TEST_CASE(
+    "a map that comes first stands for the geometry's opacity, and its transparent parts beat all flags") {
+  using namespace instance_flag;
+  const auto hits = [](auto... all) {
+    const RayState state = with_map(all...);
+    return state.status == RayStatus::Done && state.committed.valid();
+  };
+  const auto asks = [](auto... all) { return with_map(all...).status == RayStatus::NeedsAnyHit; };
+  for (const bool opaque : {false, true}) {
+    for (const uint32_t of_instance : {0u, kForceOpaque, kForceNoOpaque})
+      for (const uint32_t of_ray : {0u, ray_flag::kOpaque, ray_flag::kNoOpaque}) {
+        const RayState state = with_map(MicroState::Transparent, opaque, of_instance, of_ray);
+        CHECK(state.status == RayStatus::Done);
+        CHECK_FALSE(state.committed.valid());
+      }
+    CHECK(hits(MicroState::Opaque, opaque, 0u, 0u));
+    CHECK(asks(MicroState::UnknownOpaque, opaque, 0u, 0u));
+    CHECK(asks(MicroState::UnknownTransparent, opaque, 0u, 0u));
+    CHECK(hits(MicroState::UnknownOpaque, opaque, kForceMicromaps2State, 0u));
+    CHECK_FALSE(hits(MicroState::UnknownTransparent, opaque, kForceMicromaps2State, 0u));
+    CHECK(hits(MicroState::UnknownTransparent, opaque, kForceOpaque, 0u));
+    CHECK(asks(MicroState::Opaque, opaque, kForceNoOpaque, 0u));
+    CHECK(hits(MicroState::Opaque, opaque, kForceNoOpaque, ray_flag::kOpaque));
+    CHECK_FALSE(hits(MicroState::Opaque, opaque, 0u, ray_flag::kCullOpaque));
+    CHECK(asks(MicroState::UnknownOpaque, opaque, 0u, ray_flag::kCullOpaque));
+    CHECK(with_map(MicroState::UnknownOpaque, opaque, 0u, ray_flag::kCullNoOpaque).status == RayStatus::Done);
+    CHECK(hits(MicroState::Transparent, opaque, kDisableMicromaps, 0u) == opaque);
+    CHECK(asks(MicroState::Transparent, opaque, kDisableMicromaps, 0u) != opaque);
+  }
 }
 
 TEST_CASE("skip flags pass over triangles and boxes") {
