@@ -22,10 +22,6 @@ bool is_depth(VkFormat format) {
   return std::string_view(name_of(format)).substr(0, 11) == "VK_FORMAT_D";
 }
 
-bool has_depth_and_stencil(VkFormat format) {
-  return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
-}
-
 // Returns whether texels of a format come in blocks, which can be copied and sampled, and nothing else.
 bool has_blocks(const std::optional<exec::TexelFormat>& format) {
   return format && exec::info_of(*format).block > 1;
@@ -75,11 +71,15 @@ VkImageUsageFlags usage_of(VkFormatFeatureFlags2 features) {
 
 }  // namespace
 
+bool has_depth_and_stencil(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
+}
+
 std::optional<exec::TexelFormat> format_of(VkFormat format) {
   return exec::format_of_vulkan(name_of(format));
 }
 
-// Choice: an image of depth and stencil has depth alone, because nothing is drawn to it.
+// Of depth and stencil it is the depth's: the stencil is an image of its own (VkImage_T::stencil).
 exec::TexelFormat texel_format_of(VkFormat format) {
   if (has_depth_and_stencil(format)) format = VK_FORMAT_D32_SFLOAT;
   if (const auto out = format_of(format)) return *out;
@@ -88,6 +88,10 @@ exec::TexelFormat texel_format_of(VkFormat format) {
 
 VkFormatFeatureFlags2 image_features_of(VkFormat format) {
   const auto texels = format_of(format);
+  // Each aspect is copied, cleared and sampled on its own.
+  if (has_depth_and_stencil(format))
+    return kTransfer | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_2_BLIT_SRC_BIT |
+           VK_FORMAT_FEATURE_2_BLIT_DST_BIT | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
   if (!texels) return 0;
   VkFormatFeatureFlags2 out = kTransfer | VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_BIT |
                               VK_FORMAT_FEATURE_2_BLIT_SRC_BIT | VK_FORMAT_FEATURE_2_BLIT_DST_BIT;

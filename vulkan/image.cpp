@@ -65,7 +65,43 @@ exec::ImageView whole_of(const Device& device, const VkImageCreateInfo& info) {
   return out;
 }
 
+// Choice: stencil begins at a multiple of the alignment of windows.
+VkDeviceSize stencil_offset(const Image& image) {
+  constexpr VkDeviceSize kStep = mem::AddressSpace::kWindowAlignment;
+  return (image.whole.bytes() + kStep - 1) / kStep * kStep;
+}
+
+std::unique_ptr<Image> image_of(const Device& device, const VkImageCreateInfo& info) {
+  auto out = std::make_unique<Image>();
+  out->whole = whole_of(device, info), out->type = info.imageType;
+  if (!has_depth_and_stencil(info.format)) return out;
+  out->has_24_bits = info.format == VK_FORMAT_D24_UNORM_S8_UINT;
+  VkImageCreateInfo stencil = info;
+  stencil.format = VK_FORMAT_S8_UINT;
+  out->stencil = image_of(device, stencil);
+  return out;
+}
+
 }  // namespace
+
+exec::Words cleared_words(exec::TexelFormat format, const VkClearDepthStencilValue& value) {
+  const bool is_stencil = exec::is_integer(exec::info_of(format));
+  return {is_stencil ? value.stencil : std::bit_cast<uint32_t>(value.depth), 0, 0, 0};
+}
+
+VkDeviceSize bytes_of(const Image& image) {
+  return image.stencil ? stencil_offset(image) + image.stencil->whole.bytes() : image.whole.bytes();
+}
+
+std::array<Image*, 2> planes_of(VkImage image, VkImageAspectFlags aspects) {
+  if (!image->stencil || !(aspects & VK_IMAGE_ASPECT_STENCIL_BIT)) return {image, nullptr};
+  return {aspects & VK_IMAGE_ASPECT_DEPTH_BIT ? image : nullptr, image->stencil.get()};
+}
+
+Image* plane_of(VkImage image, VkImageAspectFlags aspect) {
+  const auto [first, second] = planes_of(image, aspect);
+  return first ? first : second;
+}
 
 exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& range) {
   const auto count = [](uint32_t asked, uint32_t first, uint32_t there) {
@@ -90,13 +126,12 @@ std::byte* texel_of(const Device& device, const Image& image, const exec::TexelI
 }
 
 VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out) {
-  auto made = std::make_unique<Image>();
-  made->whole = whole_of(device, *info);
-  if (made->whole.bytes() > kMaxAllocationBytes)
+  std::unique_ptr<Image> made = image_of(device, *info);
+  if (bytes_of(*made) > kMaxAllocationBytes)
     throw Refusal(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                   fmt::format("an image has at most {} bytes", kMaxAllocationBytes));
   made->whole.name = fmt::format("image {}", ++device.images_made);
-  made->type = info->imageType;
+  if (made->stencil) made->stencil->whole.name = made->whole.name + "'s stencil";
   *out = made.release();
   return VK_SUCCESS;
 }
@@ -107,8 +142,12 @@ void DestroyImage(Device& device, VkImage image) {
 }
 
 VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset) {
-  image->whole.base = bind_window(device, image->whole.name, image->whole.bytes(), memory, offset);
+  image->whole.base = bind_window(device, image->whole.name, bytes_of(*image), memory, offset);
   image->memory = memory, image->offset = offset;
+  if (Image* const stencil = image->stencil.get()) {
+    stencil->whole.base = image->whole.base + stencil_offset(*image);
+    stencil->memory = memory, stencil->offset = offset + stencil_offset(*image);
+  }
   return VK_SUCCESS;
 }
 VkResult BindImageMemory2(Device& device, uint32_t count, const VkBindImageMemoryInfo* infos) {
@@ -123,15 +162,15 @@ VkResult BindImageMemory2(Device& device, uint32_t count, const VkBindImageMemor
 }
 
 void GetImageMemoryRequirements(Device&, VkImage image, VkMemoryRequirements* out) {
-  *out = requirements_of(image->whole.bytes());
+  *out = requirements_of(bytes_of(*image));
 }
 void GetImageMemoryRequirements2(Device&, const VkImageMemoryRequirementsInfo2* info,
                                  VkMemoryRequirements2* out) {
-  answer_requirements(out, info->image->whole.bytes());
+  answer_requirements(out, bytes_of(*info->image));
 }
 void GetDeviceImageMemoryRequirements(Device& device, const VkDeviceImageMemoryRequirements* info,
                                       VkMemoryRequirements2* out) {
-  answer_requirements(out, whole_of(device, *info->pCreateInfo).bytes());
+  answer_requirements(out, bytes_of(*image_of(device, *info->pCreateInfo)));
 }
 
 // Nothing is sparse.
@@ -149,9 +188,9 @@ void GetDeviceImageSparseMemoryRequirements(Device&, const VkDeviceImageMemoryRe
 
 void GetImageSubresourceLayout(Device&, VkImage image, const VkImageSubresource* part,
                                VkSubresourceLayout* out) {
-  const exec::ImageView& whole = image->whole;
+  const exec::ImageView& whole = plane_of(image, part->aspectMask)->whole;
   const uint32_t level = part->mipLevel;
-  out->offset = whole.address_of({0, 0, 0, part->arrayLayer, level}) - whole.base;
+  out->offset = whole.address_of({0, 0, 0, part->arrayLayer, level}) - image->whole.base;
   out->rowPitch = VkDeviceSize{whole.blocks(0, level)} * whole.texel_bytes();
   out->depthPitch = out->rowPitch * whole.blocks(1, level);
   out->arrayPitch = out->size = out->depthPitch * whole.extent(2, level);

@@ -1,12 +1,15 @@
 // Holds images, views of them, samplers and views of buffers as texels.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "exec/image_view.h"
 #include "vulkan/handles.h"
+#include "vulkan/messages.h"
 
 // Is a window on device memory that holds texels in rows (exec/image_view.h). Images of linear and of optimal
 // tiling lie in the same way.
@@ -16,10 +19,16 @@ struct VkImage_T {
   VkImageType type = VK_IMAGE_TYPE_2D;
   VkDeviceMemory memory = nullptr;
   VkDeviceSize offset = 0;  // in the memory
+  // Depth has 24 bits in buffers. In the image it is a float, which can tell all of them apart.
+  bool has_24_bits = false;
+  // The stencil of an image that has depth and stencil. It lies behind the depth in the same window.
+  std::unique_ptr<VkImage_T> stencil;
 };
 
 struct VkImageView_T {
   glint::exec::ImageView view;
+  // What a view of both depth and stencil shows besides. Passes clear it.
+  std::optional<glint::exec::ImageView> stencil;
 };
 
 struct VkSampler_T {
@@ -57,6 +66,30 @@ inline uint32_t block_of(const Image& image) {
 // Returns what the device can do with images of a format, and with texels in buffers.
 VkFormatFeatureFlags2 image_features_of(VkFormat format);
 VkFormatFeatureFlags2 buffer_features_of(VkFormat format);
+
+// Returns whether texels of a format have depth and stencil.
+bool has_depth_and_stencil(VkFormat format);
+// Returns the parts of an image that the aspects name: itself, its stencil, both, or a null pointer in place
+// of one. Without any aspect it is the image.
+std::array<Image*, 2> planes_of(VkImage image, VkImageAspectFlags aspects);
+// Returns the one part that an aspect names.
+Image* plane_of(VkImage image, VkImageAspectFlags aspect);
+// Calls `each(source, target)` for the parts of two images that the aspects name. Throws Refusal when these
+// differ.
+template <class Each>
+void for_each_plane(VkImage source, VkImageAspectFlags of_source, VkImage target,
+                    VkImageAspectFlags of_target, Each&& each) {
+  const auto from = planes_of(source, of_source), to = planes_of(target, of_target);
+  for (size_t i = 0; i < from.size(); ++i) {
+    if (!from[i] != !to[i]) throw Refusal("the aspects of a copy are not those of both images");
+    if (from[i]) each(from[i], to[i]);
+  }
+}
+// Returns the bytes of memory that an image takes.
+VkDeviceSize bytes_of(const Image& image);
+
+// Returns the texel that a clear writes to depth, or to stencil where the format has integers.
+exec::Words cleared_words(exec::TexelFormat format, const VkClearDepthStencilValue& value);
 
 // Returns the levels and layers that a range with VK_REMAINING_* means, with the samples as layers. Throws
 // Refusal when the image does not have them.

@@ -144,9 +144,14 @@ VkResult CreateImageView(Device& device, const VkImageViewCreateInfo* info, VkIm
   auto made = std::make_unique<VkImageView_T>();
   exec::ImageView& view = made->view;
   const bool shows_slices = info->image->type == VK_IMAGE_TYPE_3D && info->viewType != VK_IMAGE_VIEW_TYPE_3D;
+  const auto [first, second] = planes_of(info->image, info->subresourceRange.aspectMask);
+  const Image& shown = first ? *first : *second;
   view = shows_slices ? slices_of(*info->image, info->subresourceRange)
-                      : exec::part_of(info->image->whole, range_of(*info->image, info->subresourceRange));
-  show_as(view, texel_format_of(info->format)), view.shape = shape_of(info->viewType);
+                      : exec::part_of(shown.whole, range_of(shown, info->subresourceRange));
+  show_as(view, first ? texel_format_of(info->format) : shown.whole.format);
+  view.shape = shape_of(info->viewType);
+  if (first && second)
+    made->stencil = exec::part_of(second->whole, range_of(*second, info->subresourceRange));
   const VkComponentMapping& map = info->components;
   view.swizzle = {component_of(map.r, exec::Component::Red), component_of(map.g, exec::Component::Green),
                   component_of(map.b, exec::Component::Blue), component_of(map.a, exec::Component::Alpha)};

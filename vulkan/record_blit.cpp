@@ -101,25 +101,32 @@ void check_destination(const Blit& blit) {
   if (!fits) throw Refusal("a blit leaves an image");
 }
 
+Blit blit_of(const Image* from, const Image* to, const VkImageBlit2& region, VkFilter filter) {
+  const auto& [from0, from1] = region.srcOffsets;
+  const auto& [to0, to1] = region.dstOffsets;
+  return {from,
+          to,
+          region.srcSubresource.mipLevel,
+          region.dstSubresource.mipLevel,
+          region.srcSubresource.baseArrayLayer,
+          region.dstSubresource.baseArrayLayer,
+          region.srcSubresource.layerCount,
+          {Axis{from0.x, from1.x, to0.x, to1.x}, Axis{from0.y, from1.y, to0.y, to1.y},
+           Axis{from0.z, from1.z, to0.z, to1.z}},
+          filter == VK_FILTER_LINEAR};
+}
+
 }  // namespace
 
 void CmdBlitImage2(CommandBuffer& commands, const VkBlitImageInfo2* info) {
   for (uint32_t i = 0; i < info->regionCount; ++i) {
     const VkImageBlit2& region = info->pRegions[i];
-    const auto& [from0, from1] = region.srcOffsets;
-    const auto& [to0, to1] = region.dstOffsets;
-    const Blit blit{info->srcImage,
-                    info->dstImage,
-                    region.srcSubresource.mipLevel,
-                    region.dstSubresource.mipLevel,
-                    region.srcSubresource.baseArrayLayer,
-                    region.dstSubresource.baseArrayLayer,
-                    region.srcSubresource.layerCount,
-                    {Axis{from0.x, from1.x, to0.x, to1.x}, Axis{from0.y, from1.y, to0.y, to1.y},
-                     Axis{from0.z, from1.z, to0.z, to1.z}},
-                    info->filter == VK_FILTER_LINEAR};
-    check_destination(blit);
-    commands.record([blit](Queue& queue) { run(queue, blit); });
+    for_each_plane(info->srcImage, region.srcSubresource.aspectMask, info->dstImage,
+                   region.dstSubresource.aspectMask, [&](const Image* from, const Image* to) {
+                     const Blit blit = blit_of(from, to, region, info->filter);
+                     check_destination(blit);
+                     commands.record([blit](Queue& queue) { run(queue, blit); });
+                   });
   }
 }
 

@@ -1,7 +1,6 @@
 // Records copies between images and buffers, and clears of images.
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <fmt/format.h>
 #include <vector>
@@ -91,6 +90,27 @@ uint64_t blocks_in_buffer(const Image& image, uint32_t texels, uint32_t in_image
   return texels ? texels / block_of(image) : in_image;
 }
 
+// In buffers, depth of 24 bits lies in the low bits of words (Vulkan, "Copying Data Between Buffers and
+// Images").
+constexpr uint32_t kMost24Bits = 0xff'ffff;
+
+void copy_24_bits_in(const std::byte* from, std::byte* to, uint32_t columns) {
+  for (uint32_t i = 0; i < columns; ++i) {
+    uint32_t word;
+    std::memcpy(&word, from + i * sizeof word, sizeof word);
+    const auto depth = float(double(word & kMost24Bits) / kMost24Bits);
+    std::memcpy(to + i * sizeof depth, &depth, sizeof depth);
+  }
+}
+void copy_24_bits_out(const std::byte* from, std::byte* to, uint32_t columns) {
+  for (uint32_t i = 0; i < columns; ++i) {
+    float depth;
+    std::memcpy(&depth, from + i * sizeof depth, sizeof depth);
+    const auto word = uint32_t(double(std::clamp(depth, 0.0f, 1.0f)) * kMost24Bits + 0.5);
+    std::memcpy(to + i * sizeof word, &word, sizeof word);
+  }
+}
+
 void copy_rows(Queue& queue, VkBuffer buffer, VkDeviceSize offset, const Box& box, uint64_t row_bytes,
                uint64_t rows, Direction direction) {
   const uint64_t bytes = box.row_bytes();
@@ -100,13 +120,18 @@ void copy_rows(Queue& queue, VkBuffer buffer, VkDeviceSize offset, const Box& bo
       std::byte* const in_buffer = bytes_of(queue.device, buffer, at, bytes).data;
       std::byte* const in_image = texel_of(queue.device, *box.image, box.at(row, slice));
       const bool to_image = direction == Direction::ToImage;
-      std::memmove(to_image ? in_image : in_buffer, to_image ? in_buffer : in_image, bytes);
+      if (box.image->has_24_bits)
+        to_image ? copy_24_bits_in(in_buffer, in_image, box.columns)
+                 : copy_24_bits_out(in_image, in_buffer, box.columns);
+      else
+        std::memmove(to_image ? in_image : in_buffer, to_image ? in_buffer : in_image, bytes);
     }
   queue.device.clock.add_transfer(2 * bytes * box.rows * box.slices);
 }
 
-void record_copy(CommandBuffer& commands, VkBuffer buffer, VkImage image, const VkBufferImageCopy2& region,
+void record_copy(CommandBuffer& commands, VkBuffer buffer, VkImage whole, const VkBufferImageCopy2& region,
                  Direction direction) {
+  Image* const image = plane_of(whole, region.imageSubresource.aspectMask);
   if (image->whole.samples > 1) throw Refusal("a copy between a buffer and an image of several samples");
   const Box box = box_of(image, region.imageSubresource, region.imageOffset, region.imageExtent);
   const uint64_t row_bytes =
@@ -114,6 +139,32 @@ void record_copy(CommandBuffer& commands, VkBuffer buffer, VkImage image, const 
   const uint64_t rows = blocks_in_buffer(*image, region.bufferImageHeight, box.rows);
   commands.record([=, offset = region.bufferOffset](Queue& queue) {
     copy_rows(queue, buffer, offset, box, row_bytes, rows, direction);
+  });
+}
+
+// Records a copy between images that have one aspect each.
+void record_copy(CommandBuffer& commands, Image* source, Image* target, const VkImageCopy2& region) {
+  if (source->whole.texel_bytes() != target->whole.texel_bytes())
+    throw Refusal("the texels of both images differ in size");
+  if (source->whole.samples != target->whole.samples)
+    throw Refusal("a copy between images that differ in their number of samples");
+  Box from = box_of(source, region.srcSubresource, region.srcOffset, region.extent);
+  // The extent has the source's texels. Where only one image has blocks, a block is copied as a texel.
+  Box to = {target,
+            region.dstSubresource.mipLevel,
+            region.dstSubresource.baseArrayLayer * target->whole.samples,
+            region.dstOffset,
+            from.columns,
+            from.rows,
+            slices_of(*target, region.dstSubresource, region.extent)};
+  from.slices = to.slices = std::max(from.slices, to.slices);
+  check_box(from), check_box(to);
+  commands.record([=](Queue& queue) {
+    for (uint32_t slice = 0; slice < from.slices; ++slice)
+      for (uint32_t row = 0; row < from.rows; ++row)
+        std::memmove(texel_of(queue.device, *to.image, to.at(row, slice)),
+                     texel_of(queue.device, *from.image, from.at(row, slice)), from.row_bytes());
+    queue.device.clock.add_transfer(2 * from.row_bytes() * from.rows * from.slices);
   });
 }
 
@@ -170,28 +221,9 @@ void CmdCopyImageToBuffer(CommandBuffer& commands, VkImage from, VkImageLayout, 
 void CmdCopyImage2(CommandBuffer& commands, const VkCopyImageInfo2* info) {
   for (uint32_t i = 0; i < info->regionCount; ++i) {
     const VkImageCopy2& region = info->pRegions[i];
-    if (info->srcImage->whole.texel_bytes() != info->dstImage->whole.texel_bytes())
-      throw Refusal("the texels of both images differ in size");
-    if (info->srcImage->whole.samples != info->dstImage->whole.samples)
-      throw Refusal("a copy between images that differ in their number of samples");
-    Box from = box_of(info->srcImage, region.srcSubresource, region.srcOffset, region.extent);
-    // The extent has the source's texels. Where only one image has blocks, a block is copied as a texel.
-    Box to = {info->dstImage,
-              region.dstSubresource.mipLevel,
-              region.dstSubresource.baseArrayLayer * info->dstImage->whole.samples,
-              region.dstOffset,
-              from.columns,
-              from.rows,
-              slices_of(*info->dstImage, region.dstSubresource, region.extent)};
-    from.slices = to.slices = std::max(from.slices, to.slices);
-    check_box(from), check_box(to);
-    commands.record([=](Queue& queue) {
-      for (uint32_t slice = 0; slice < from.slices; ++slice)
-        for (uint32_t row = 0; row < from.rows; ++row)
-          std::memmove(texel_of(queue.device, *to.image, to.at(row, slice)),
-                       texel_of(queue.device, *from.image, from.at(row, slice)), from.row_bytes());
-      queue.device.clock.add_transfer(2 * from.row_bytes() * from.rows * from.slices);
-    });
+    for_each_plane(info->srcImage, region.srcSubresource.aspectMask, info->dstImage,
+                   region.dstSubresource.aspectMask,
+                   [&](Image* from, Image* to) { record_copy(commands, from, to, region); });
   }
 }
 void CmdCopyImage(CommandBuffer& commands, VkImage from, VkImageLayout from_layout, VkImage to,
@@ -214,9 +246,9 @@ void CmdClearColorImage(CommandBuffer& commands, VkImage image, VkImageLayout, c
 void CmdClearDepthStencilImage(CommandBuffer& commands, VkImage image, VkImageLayout,
                                const VkClearDepthStencilValue* value, uint32_t count,
                                const VkImageSubresourceRange* ranges) {
-  const bool is_stencil = exec::is_integer(exec::info_of(image->whole.format));
-  record_clear(commands, image,
-               {is_stencil ? value->stencil : std::bit_cast<uint32_t>(value->depth), 0, 0, 0}, count, ranges);
+  for (uint32_t i = 0; i < count; ++i)
+    for (Image* const plane : planes_of(image, ranges[i].aspectMask))
+      if (plane) record_clear(commands, plane, cleared_words(plane->whole.format, *value), 1, &ranges[i]);
 }
 
 }  // namespace glint::vulkan

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <vector>
 
@@ -47,15 +46,24 @@ exec::Words words_of(const VkClearColorValue& colour) {
   std::memcpy(out.data(), &colour, sizeof out);
   return out;
 }
-exec::Words words_of(const VkClearDepthStencilValue& value) {
-  return {std::bit_cast<uint32_t>(value.depth), 0, 0, 0};
-}
-
 void record_clear(CommandBuffer& commands, VkImageView view, const VkRect2D& area, const Layers& layers,
                   const exec::Words& words) {
   if (!view) return;
   commands.record(
       [of = view->view, area, layers, words](Queue& queue) { clear(queue, of, area, layers, words); });
+}
+
+// Clears the aspects of a view of depth and stencil.
+void record_clear(CommandBuffer& commands, VkImageView view, VkImageAspectFlags aspects, const VkRect2D& area,
+                  const Layers& layers, const VkClearDepthStencilValue& value) {
+  if (!view) return;
+  const bool is_stencil = exec::is_integer(exec::info_of(view->view.format));
+  if (aspects & (is_stencil ? VK_IMAGE_ASPECT_STENCIL_BIT : VK_IMAGE_ASPECT_DEPTH_BIT))
+    record_clear(commands, view, area, layers, cleared_words(view->view.format, value));
+  if (view->stencil && (aspects & VK_IMAGE_ASPECT_STENCIL_BIT))
+    commands.record([of = *view->stencil, area, layers, value](Queue& queue) {
+      clear(queue, of, area, layers, cleared_words(of.format, value));
+    });
 }
 
 constexpr Layers kAllLayers{0, ~0u >> 1};
@@ -78,11 +86,8 @@ bool is_depth_of(const VkRenderPass_T& pass, uint32_t attachment) {
                      [&](const VkRenderPass_T::Subpass& each) { return each.depth == attachment; });
 }
 
-void clear_attachment(CommandBuffer& commands, const VkRenderingAttachmentInfo& from, const VkRect2D& area,
-                      bool is_depth) {
-  if (from.loadOp != VK_ATTACHMENT_LOAD_OP_CLEAR) return;
-  record_clear(commands, from.imageView, area, kAllLayers,
-               is_depth ? words_of(from.clearValue.depthStencil) : words_of(from.clearValue.color));
+bool is_cleared(const VkRenderingAttachmentInfo* attachment) {
+  return attachment && attachment->loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR;
 }
 
 }  // namespace
@@ -97,10 +102,17 @@ void CmdBeginRenderPass2(CommandBuffer& commands, const VkRenderPassBeginInfo* i
     rendering.views.assign(with->pAttachments, with->pAttachments + with->attachmentCount);
   const VkRenderPass_T& pass = *info->renderPass;
   for (uint32_t i = 0; i < pass.attachments.size() && i < rendering.views.size(); ++i) {
-    if (pass.attachments[i].load != VK_ATTACHMENT_LOAD_OP_CLEAR || i >= info->clearValueCount) continue;
+    if (i >= info->clearValueCount) continue;
     const VkClearValue& value = info->pClearValues[i];
-    record_clear(commands, rendering.views[i], info->renderArea, kAllLayers,
-                 is_depth_of(pass, i) ? words_of(value.depthStencil) : words_of(value.color));
+    const bool clears = pass.attachments[i].load == VK_ATTACHMENT_LOAD_OP_CLEAR;
+    VkImageAspectFlags aspects = 0;
+    if (clears) aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
+    if (pass.attachments[i].stencil_load == VK_ATTACHMENT_LOAD_OP_CLEAR)
+      aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    if (is_depth_of(pass, i))
+      record_clear(commands, rendering.views[i], aspects, info->renderArea, kAllLayers, value.depthStencil);
+    else if (clears)
+      record_clear(commands, rendering.views[i], info->renderArea, kAllLayers, words_of(value.color));
   }
   enter(rendering, 0);
 }
@@ -125,11 +137,20 @@ void CmdBeginRendering(CommandBuffer& commands, const VkRenderingInfo* info) {
   const bool is_resumed = (info->flags & VK_RENDERING_RESUMING_BIT) != 0;
   for (uint32_t i = 0; i < info->colorAttachmentCount; ++i) {
     rendering.colours.push_back(info->pColorAttachments[i].imageView);
-    if (!is_resumed) clear_attachment(commands, info->pColorAttachments[i], info->renderArea, false);
+    if (!is_resumed && is_cleared(&info->pColorAttachments[i]))
+      record_clear(commands, info->pColorAttachments[i].imageView, info->renderArea, kAllLayers,
+                   words_of(info->pColorAttachments[i].clearValue.color));
   }
-  if (!info->pDepthAttachment) return;
-  rendering.depth = info->pDepthAttachment->imageView;
-  if (!is_resumed) clear_attachment(commands, *info->pDepthAttachment, info->renderArea, true);
+  const VkRenderingAttachmentInfo *const depth = info->pDepthAttachment, *const stencil =
+                                                                             info->pStencilAttachment;
+  rendering.depth = depth && depth->imageView ? depth->imageView : stencil ? stencil->imageView : nullptr;
+  if (is_resumed) return;
+  if (is_cleared(depth))
+    record_clear(commands, depth->imageView, VK_IMAGE_ASPECT_DEPTH_BIT, info->renderArea, kAllLayers,
+                 depth->clearValue.depthStencil);
+  if (is_cleared(stencil))
+    record_clear(commands, stencil->imageView, VK_IMAGE_ASPECT_STENCIL_BIT, info->renderArea, kAllLayers,
+                 stencil->clearValue.depthStencil);
 }
 void CmdEndRendering(CommandBuffer& commands) {
   commands.rendering = {};
@@ -143,9 +164,9 @@ void CmdClearAttachments(CommandBuffer& commands, uint32_t count, const VkClearA
     for (uint32_t j = 0; j < num_rects; ++j) {
       const VkClearAttachment& each = attachments[i];
       const Layers layers{rects[j].baseArrayLayer, rects[j].layerCount};
-      if (each.aspectMask & VK_IMAGE_ASPECT_DEPTH_BIT)
-        record_clear(commands, rendering.depth, rects[j].rect, layers,
-                     words_of(each.clearValue.depthStencil));
+      if (each.aspectMask & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT))
+        record_clear(commands, rendering.depth, each.aspectMask, rects[j].rect, layers,
+                     each.clearValue.depthStencil);
       else if ((each.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) &&
                each.colorAttachment < rendering.colours.size())
         record_clear(commands, rendering.colours[each.colorAttachment], rects[j].rect, layers,

@@ -6,7 +6,7 @@ if(TARGET glint_vulkan AND VULKAN_LOADER)
   set(manifest ${PROJECT_BINARY_DIR}/glint_icd.json)
   # The client links the compiler, and with it glslang, that the driver has in it too.
   glint_test(vulkan LINKS glint::frontend ${VULKAN_LOADER} ${CMAKE_DL_LIBS}
-    SOURCES vulkan/announced_test.cpp vulkan/client.cpp vulkan/compute_test.cpp vulkan/descriptor_buffer_test.cpp vulkan/descriptor_test.cpp vulkan/image_test.cpp vulkan/inspection_test.cpp vulkan/micromap_test.cpp vulkan/null_descriptor_test.cpp vulkan/pipeline_file_test.cpp vulkan/queue_test.cpp vulkan/ray_client.cpp vulkan/ray_pipeline_client.cpp vulkan/ray_pipeline_test.cpp vulkan/ray_query_test.cpp vulkan/texture_test.cpp vulkan/timing_test.cpp vulkan/window_test.cpp vulkan/weather_test.cpp vulkan/wrong_use_test.cpp)
+    SOURCES vulkan/announced_test.cpp vulkan/client.cpp vulkan/compute_test.cpp vulkan/descriptor_buffer_test.cpp vulkan/descriptor_test.cpp vulkan/image_test.cpp vulkan/inspection_test.cpp vulkan/micromap_test.cpp vulkan/null_descriptor_test.cpp vulkan/pipeline_file_test.cpp vulkan/queue_test.cpp vulkan/ray_client.cpp vulkan/ray_pipeline_client.cpp vulkan/ray_pipeline_test.cpp vulkan/ray_query_test.cpp vulkan/stencil_test.cpp vulkan/texture_test.cpp vulkan/timing_test.cpp vulkan/window_test.cpp vulkan/weather_test.cpp vulkan/wrong_use_test.cpp)
   add_dependencies(test_vulkan glint_vulkan)
   set_tests_properties(vulkan PROPERTIES ENVIRONMENT "VK_DRIVER_FILES=${manifest};VK_ICD_FILENAMES=${manifest}")
   # VkFFT is a header that wants a glslang, which frontend brings. Its client is built where libvkfft-dev is installed, and
