@@ -44,6 +44,7 @@ struct DeviceProperties : VkPhysicalDeviceVulkan11Properties,
                           VkPhysicalDeviceRayTracingInvocationReorderPropertiesNV,
                           VkPhysicalDeviceDescriptorBufferPropertiesEXT,
                           VkPhysicalDeviceRobustness2PropertiesEXT,
+                          VkPhysicalDeviceShaderSMBuiltinsPropertiesNV,
                           VkPhysicalDeviceOpacityMicromapPropertiesEXT,
                           VkPhysicalDeviceCustomBorderColorPropertiesEXT {
   // The structures of 1.1 rename these.

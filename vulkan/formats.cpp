@@ -19,7 +19,8 @@ constexpr VkFormatFeatureFlags2 kWithoutFormat = VK_FORMAT_FEATURE_2_STORAGE_REA
                                                  VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT;
 
 bool is_depth(VkFormat format) {
-  return std::string_view(name_of(format)).substr(0, 11) == "VK_FORMAT_D";
+  return std::string_view(name_of(format)).substr(0, 11) == "VK_FORMAT_D" ||
+         format == VK_FORMAT_X8_D24_UNORM_PACK32;
 }
 
 // Returns whether texels of a format come in blocks, which can be copied and sampled, and nothing else.
@@ -75,7 +76,12 @@ bool has_depth_and_stencil(VkFormat format) {
   return format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
 }
 
+bool has_depth_of_24_bits(VkFormat format) {
+  return format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_X8_D24_UNORM_PACK32;
+}
+
 std::optional<exec::TexelFormat> format_of(VkFormat format) {
+  if (format == VK_FORMAT_X8_D24_UNORM_PACK32) format = VK_FORMAT_D32_SFLOAT;  // VkImage_T::has_24_bits
   return exec::format_of_vulkan(name_of(format));
 }
 

@@ -74,8 +74,8 @@ VkDeviceSize stencil_offset(const Image& image) {
 std::unique_ptr<Image> image_of(const Device& device, const VkImageCreateInfo& info) {
   auto out = std::make_unique<Image>();
   out->whole = whole_of(device, info), out->type = info.imageType;
+  out->has_24_bits = has_depth_of_24_bits(info.format);
   if (!has_depth_and_stencil(info.format)) return out;
-  out->has_24_bits = info.format == VK_FORMAT_D24_UNORM_S8_UINT;
   VkImageCreateInfo stencil = info;
   stencil.format = VK_FORMAT_S8_UINT;
   out->stencil = image_of(device, stencil);

@@ -67,8 +67,8 @@ inline uint32_t block_of(const Image& image) {
 VkFormatFeatureFlags2 image_features_of(VkFormat format);
 VkFormatFeatureFlags2 buffer_features_of(VkFormat format);
 
-// Returns whether texels of a format have depth and stencil.
 bool has_depth_and_stencil(VkFormat format);
+bool has_depth_of_24_bits(VkFormat format);
 // Returns the parts of an image that the aspects name: itself, its stencil, both, or a null pointer in place
 // of one. Without any aspect it is the image.
 std::array<Image*, 2> planes_of(VkImage image, VkImageAspectFlags aspects);

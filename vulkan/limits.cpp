@@ -248,6 +248,7 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
   set_descriptor_buffers(p);
   set_acceleration_structures(p);
   set_ray_pipelines(p, gpu);
+  p.shaderSMCount = gpu.cores, p.shaderWarpsPerSM = gpu.core.warps;
   p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
   p.maxMultiviewViewCount = 6, p.maxMultiviewInstanceIndex = (1u << 27) - 1;
   p.maxMemoryAllocationSize = p.maxBufferSize = kMaxAllocationBytes;

@@ -116,5 +116,39 @@ TEST_CASE("the budget of the heap says what the process has, on whatever instanc
   CHECK(used(other) == before);
 }
 
+// An untimed launch runs as if on one core with one warp.
+TEST_CASE("a shader reads on which core and in which place its warp runs, within what the device says") {
+  VkPhysicalDeviceShaderSMBuiltinsFeaturesNV wanted{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_FEATURES_NV, nullptr, VK_TRUE};
+  Client::Options options;
+  options.extensions = {VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME}, options.more_features = &wanted;
+  Client client(options);
+  VkPhysicalDeviceShaderSMBuiltinsPropertiesNV cores{};
+  cores.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV;
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &cores, {}};
+  vkGetPhysicalDeviceProperties2(client.physical, &all);
+  const MappedBuffer out = client.buffer(4096);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\n#extension GL_NV_shader_sm_builtins : require\nlayout(local_size_x = 32) in;\n"
+      "layout(set = 0, binding = 0) buffer Out { uvec4 v[]; };\n"
+      "void main() { if (gl_LocalInvocationIndex == 0) v[gl_WorkGroupID.x] = uvec4(gl_SMIDNV, gl_SMCountNV, "
+      "gl_WarpIDNV, gl_WarpsPerSMNV); }\n",
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+
+  REQUIRE(client.dispatch(pipeline, set, {64, 1, 1}) == VK_SUCCESS);
+
+  CHECK(cores.shaderSMCount == 8);
+  CHECK(cores.shaderWarpsPerSM == 32);
+  for (uint32_t i = 0; i < 64; ++i) {
+    const auto v = out.as<uint32_t>().subspan(4 * i, 4);
+    REQUIRE(v[0] < v[1]);
+    REQUIRE(v[1] <= cores.shaderSMCount);
+    REQUIRE(v[2] < v[3]);
+    REQUIRE(v[3] <= cores.shaderWarpsPerSM);
+  }
+  CHECK(client.messages.empty());
+}
+
 }  // namespace
 }  // namespace glint::test

@@ -97,6 +97,31 @@ TEST_CASE("depth and stencil are cleared and copied to buffers each on its own")
   CHECK(client.messages.empty());
 }
 
+TEST_CASE("depth of 24 bits without stencil is cleared, copied out and in, and may be an attachment") {
+  Client client;
+  const VkFormat format = VK_FORMAT_X8_D24_UNORM_PACK32;
+  VkFormatProperties features{};
+  vkGetPhysicalDeviceFormatProperties(client.physical, format, &features);
+  CHECK(features.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
+  const MappedBuffer first = client.buffer(256), second = client.buffer(256);
+  const VkImage image = image_of(client, format);
+
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    clear(commands, image, kDepth, 0.7f, 0);
+    download(commands, image, kDepth, first);
+    const VkBufferImageCopy region = region_of(kDepth);
+    vkCmdCopyBufferToImage(commands, first.buffer, image, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    barrier(commands);
+    download(commands, image, kDepth, second);
+  }) == VK_SUCCESS);
+
+  for (uint32_t i = 0; i < kTexels; ++i) {
+    REQUIRE(first.as<uint32_t>()[i] == uint32_t(0.7f * 0xff'ffff + 0.5));
+    REQUIRE(second.as<uint32_t>()[i] == first.as<uint32_t>()[i]);
+  }
+  CHECK(client.messages.empty());
+}
+
 TEST_CASE("both aspects are uploaded, copied and blitted between images, and sampled") {
   Client client;
   for (const VkFormat format : kFormats) {
