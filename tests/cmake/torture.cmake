@@ -5,7 +5,7 @@ if(TARGET glint::pipeline AND TARGET glint::frontend)
   target_link_libraries(glint_torture PUBLIC glint::pipeline PRIVATE glint_warnings)
   target_include_directories(glint_torture PUBLIC ${PROJECT_SOURCE_DIR})
   target_precompile_headers(glint_torture REUSE_FROM glint_base)
-  glint_cold(glint_torture -O2)
+  glint_cold(glint_torture -O2 12)
   set_source_files_properties(torture/interpreter_run.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # A class of a header has a member of its anonymous namespace.
   set_source_files_properties(torture/interpreter.cpp PROPERTIES COMPILE_DEFINITIONS SPV_ENABLE_UTILITY_CODE)
   glint_test(torture LINKS glint_torture)
