@@ -69,8 +69,10 @@ void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, fr
   check(gpu);
   Diagnostics warnings;
   const std::string name(kName);
+  frontend::GlslOptions glsl;
+  glsl.cache = cache;
   const std::vector<uint32_t> spirv =
-      frontend::glsl_text_to_spirv(traversal_source(), name, isa::Stage::Callable, {});
+      frontend::glsl_text_to_spirv(traversal_source(), name, isa::Stage::Callable, glsl);
   // The program is never contracted, so every hit has the bits that the RT unit gives it.
   const frontend::BackendOptions backend{gpu.compiler.max_registers, gpu.compiler.schedule, false, false,
                                          gpu.compiler.guard_latency};

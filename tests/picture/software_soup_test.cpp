@@ -9,6 +9,7 @@
 #include "pipeline/functional_machine.h"
 #include "pipeline/software_traversal.h"
 #include "tests/support/catch.h"
+#include "tests/support/kept_shaders.h"
 #include "tests/support/rt_brute.h"
 
 using namespace glint;
@@ -89,13 +90,15 @@ std::vector<uint32_t> hits_of(uint64_t seed, std::string_view unit, uint32_t max
   gpu.rt.unit = unit;
   gpu.compiler.max_registers = max_registers;
   Diagnostics warnings;
+  frontend::GlslOptions glsl;
+  glsl.cache = test::kept_shaders();
   const std::vector<uint32_t> spirv =
-      frontend::glsl_text_to_spirv(kShader, "soup.comp", isa::Stage::Compute, {});
+      frontend::glsl_text_to_spirv(kShader, "soup.comp", isa::Stage::Compute, glsl);
   const frontend::BackendOptions backend{max_registers, true, false,
                                          pipeline::compiler_for(gpu).queries_call};
   std::vector<isa::Program> programs{
-      frontend::compile_module(spirv, "soup.comp", {}, backend, warnings, nullptr).program};
-  pipeline::add_traversal(programs, gpu, nullptr);
+      frontend::compile_module(spirv, "soup.comp", {}, backend, warnings, glsl.cache).program};
+  pipeline::add_traversal(programs, gpu, glsl.cache);
   const exec::Image image = exec::link(programs);
   exec::World world;
   world.image = &image;

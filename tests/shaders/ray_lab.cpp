@@ -15,6 +15,7 @@
 #include "pipeline/software_traversal.h"
 #include "pipeline/timing_machine.h"
 #include "rtunit/structure/build.h"
+#include "tests/support/kept_shaders.h"
 
 namespace glint::test {
 namespace {
@@ -139,8 +140,10 @@ std::string lab_file(const std::string& file) {
 isa::Program compile_lab(const std::string& file, const frontend::GlslOptions& glsl,
                          const LabOptions& options) {
   Diagnostics diagnostics;
+  frontend::GlslOptions kept = glsl;
+  kept.cache = kept_shaders();
   isa::Program program = frontend::compile_file(
-      lab_file(file), glsl, {options.max_registers, options.schedule, false, options.software}, diagnostics);
+      lab_file(file), kept, {options.max_registers, options.schedule, false, options.software}, diagnostics);
   isa::verify(program, diagnostics);
   diagnostics.throw_if_errors();
   if (!diagnostics.messages().empty()) throw UserError(file + ": " + diagnostics.messages().front());
@@ -162,7 +165,7 @@ std::vector<uint32_t> RayLab::run(const LabOptions& options) {
   gpu.core.instruction_budget = kRayBudget;
   gpu.compiler.max_registers = options.max_registers;
   gpu.rt.unit = options.software ? rt::kSoftware : rt::kHardware;
-  pipeline::add_traversal(shaders.programs, gpu, shaders_.glsl.cache);
+  pipeline::add_traversal(shaders.programs, gpu, kept_shaders());
   const exec::Image linked = exec::link(shaders.programs);
   world.image = &linked;
   pipeline::build_binding_table(world, memory, table);

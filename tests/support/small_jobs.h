@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "frontend/cache.h"
 #include "pipeline/render.h"
+#include "tests/support/kept_shaders.h"
 #include "tests/support/preset.h"
 
 namespace glint::test {
@@ -26,9 +26,8 @@ inline const char* shader_folder(pipeline::Workload workload) {
 // its shaders once for all its jobs.
 inline pipeline::RenderJob small_job(const std::string& scene, pipeline::Workload workload, uint32_t size,
                                      uint32_t samples, const std::string& assets = {}) {
-  static frontend::ShaderCache shaders({});  // in memory only
   pipeline::RenderJob job;
-  job.glsl.cache = &shaders;
+  job.glsl.cache = kept_shaders();
   job.scene = scenes::load_scene(scene, {assets});
   job.workload = workload;
   job.frame.width = job.frame.height = size;

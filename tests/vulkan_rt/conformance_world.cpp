@@ -12,6 +12,7 @@
 #include "pipeline/software_traversal.h"
 #include "pipeline/timing_machine.h"
 #include "rtunit/structure/build.h"
+#include "tests/support/kept_shaders.h"
 
 namespace glint::vulkan_rt {
 namespace {
@@ -91,8 +92,10 @@ class Host {
     const auto [it, is_new] = shader_of_.emplace(file, uint32_t(programs_.size()));
     if (is_new) {
       Diagnostics diagnostics;
+      frontend::GlslOptions glsl;
+      glsl.cache = test::kept_shaders();
       programs_.push_back(
-          frontend::compile_file((recording_.folder / "shaders" / file).string(), {}, {}, diagnostics));
+          frontend::compile_file((recording_.folder / "shaders" / file).string(), glsl, {}, diagnostics));
       isa::verify(programs_.back(), diagnostics);
       diagnostics.throw_if_errors();
     }
@@ -122,7 +125,7 @@ class Host {
     pipeline::GpuParams gpu;
     gpu.cores = 2;
     gpu.rt.unit = software ? rt::kSoftware : rt::kHardware;
-    pipeline::add_traversal(programs_, gpu, nullptr);
+    pipeline::add_traversal(programs_, gpu, test::kept_shaders());
     image_ = exec::link(programs_);
     world.image = &image_;
     pipeline::build_binding_table(world, memory, table);
