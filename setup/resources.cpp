@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -101,7 +101,9 @@ std::string read_file(const std::string& path) {
 std::optional<std::string> text_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream out;
+  out << in.rdbuf();  // in blocks; a file of /proc does not say how long it is
+  return std::move(out).str();
 }
 
 }  // namespace glint::setup

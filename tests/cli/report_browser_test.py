@@ -27,11 +27,15 @@ HAND_OUT = """
 
 
 class Browser(ReportTest):
+    opened = {}  # what the browser printed, by the bytes of the page; several tests look at one page
+
     def load(self, *names, script=""):
         """Returns the page's document after its script and then `script` have run. The console must have said nothing."""
-        page = self.report(*names)
-        self.write("report.html", glint_case.when_ready(page, script))
-        done = glint_case.opened(self.folder / "report.html")
+        page = glint_case.when_ready(self.report(*names), script)
+        if page not in self.opened:
+            self.write("report.html", page)
+            self.opened[page] = glint_case.opened(self.folder / "report.html")
+        done = self.opened[page]
         console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
         self.assertIn('data-ready="yes"', done.stdout, "the script did not end:\n" + "\n".join(console))
         self.assertEqual(console, [])
