@@ -78,17 +78,13 @@ void DeviceGeometry::add(const DeviceTriangles& from) {
       notes_.push_back(fmt::format(
           "geometry {}: {} triangles have no micromap, because their index or their map is not there",
           level_.geometries.size(), taken.unread));
-    taken_.emplace_back(level_.geometries.size(), std::move(taken));
+    micromaps_.add(level_.geometries.size(), std::move(taken));
   }
   level_.geometries.push_back(geometry);
 }
 
 void DeviceGeometry::finish() {
-  rt::MicromapFormat format{true, 0};
-  for (const auto& [geometry, taken] : taken_)
-    for (const TakenMicromaps::Map& each : taken.maps) format = common_format(format, each.format);
-  for (const auto& [geometry, taken] : taken_)
-    level_.geometries[geometry].micromaps = &micromaps_.emplace_back(in_format(taken, format));
+  micromaps_.give_to(level_);
 }
 
 void DeviceGeometry::add(const DeviceBoxes& from) {

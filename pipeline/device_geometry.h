@@ -7,12 +7,12 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "exec/texture_format.h"
 #include "memsys/address_space.h"
 #include "pipeline/device_micromaps.h"
+#include "pipeline/level_micromaps.h"
 #include "rtunit/structure/build.h"
 
 namespace glint::pipeline {
@@ -72,8 +72,7 @@ class DeviceGeometry {
   rt::BottomLevel level_;
   std::deque<std::vector<Position>> positions_;  // of each geometry of triangles
   std::deque<std::vector<rt::Bounds>> boxes_;
-  std::vector<std::pair<size_t, TakenMicromaps>> taken_;  // by the number of their geometry
-  std::deque<rt::Micromaps> micromaps_;
+  LevelMicromaps micromaps_;
   std::vector<std::string> notes_;
 };
 

@@ -11,6 +11,7 @@
 #include "pipeline/description/data.h"
 #include "pipeline/description/mesh.h"
 #include "pipeline/description/pictures.h"
+#include "pipeline/level_micromaps.h"
 #include "pipeline/software_traversal.h"
 
 namespace glint::pipeline {
@@ -75,6 +76,7 @@ PipelineWorld::PipelineWorld(const PipelineDescription& description, const GpuPa
   upload_buffers();
   upload_images(threads);
   add_samplers();
+  add_filter(gpu);
   const uint32_t stack_need = build_structures(gpu, threads);
   for (const Built& launch : launches_) {
     if (launch.description.raygen) fill_records(launch);
@@ -201,10 +203,50 @@ void PipelineWorld::add_samplers() {
     for (const auto& [place, elements] : bound.all) launch.builder->bind_samplers(place, elements);
 }
 
+namespace {
+
+uint64_t triangles_of(const rt::Geometry& geometry) {
+  return geometry.indices.empty() ? geometry.positions.size() / geometry.stride / 3
+                                  : geometry.indices.size() / 3;
+}
+
+// Returns the maps of a geometry that has so many triangles.
+TakenMicromaps maps_of(const OpacityDescription& from, uint64_t triangles) {
+  TakenMicromaps out;
+  out.index = from.index;
+  if (out.index.empty())
+    for (size_t i = 0; i < from.maps.size(); ++i) out.index.push_back(int32_t(i));
+  if (out.index.size() != triangles)
+    throw UserError(from.where,
+                    fmt::format("the opacity maps are those of {} triangles, and the geometry has {}",
+                                out.index.size(), triangles));
+  for (const OpacityDescription::Map& each : from.maps)
+    out.maps.push_back({each.format, std::as_bytes(std::span(each.states))});
+  return out;
+}
+
+}  // namespace
+
+// Lets rays ask the leaf filter that the configuration chooses. Maps that nobody asks are a mistake.
+void PipelineWorld::add_filter(const GpuParams& gpu) {
+  if (gpu.rt.leaf_filter.name != rt::LeafFilter::kNone) {
+    for (const Built& launch : launches_)
+      launch.builder->world.filter = gpu.rt.leaf_filter.make({nullptr, memory_});
+    return;
+  }
+  for (const BottomLevelDescription& level : description_.bottom_levels)
+    for (const GeometryDescription& each : level.geometries)
+      if (each.opacity)
+        throw UserError(each.opacity->where,
+                        "the geometry has opacity maps, and rt.leaf_filter = \"none\" asks none",
+                        "choose rt.leaf_filter = \"micromaps\", with --set or in [machine]");
+}
+
 uint32_t PipelineWorld::build_structures(const GpuParams& gpu, uint32_t threads) {
   std::vector<rt::StructureInfo> bottoms;
   for (const BottomLevelDescription& description : description_.bottom_levels) {
     rt::BottomLevel level;
+    LevelMicromaps micromaps;
     std::vector<scenes::Model> models;
     models.reserve(description.geometries.size());  // Geometries point into them.
     for (const GeometryDescription& g : description.geometries) {
@@ -223,10 +265,12 @@ uint32_t PipelineWorld::build_structures(const GpuParams& gpu, uint32_t threads)
         geometry.indices = g.indices;
       }
       structures.procedurals += g.aabbs.size();
-      structures.triangles += geometry.indices.empty() ? geometry.positions.size() / geometry.stride / 3
-                                                       : geometry.indices.size() / 3;
+      const uint64_t triangles = triangles_of(geometry);
+      structures.triangles += triangles;
+      if (g.opacity) micromaps.add(level.geometries.size(), maps_of(*g.opacity, triangles));
       level.geometries.push_back(geometry);
     }
+    micromaps.give_to(level);
     bottoms.push_back(rt::build_bottom(memory_, "bottom level " + description.name, level, gpu.bvh, threads));
     structures.bytes += bottoms.back().bytes;
     structures.bottom_depth = std::max(structures.bottom_depth, bottoms.back().depth);

@@ -56,6 +56,7 @@ class PipelineWorld {
   void upload_buffers();
   void upload_images(uint32_t threads);
   void add_samplers();
+  void add_filter(const GpuParams& gpu);
   uint32_t build_structures(const GpuParams& gpu, uint32_t threads);
   void fill_records(const Built& launch);
   void set_push_constants(const Built& launch);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kName = "shaders/traversal/traversal.rcall";
 
-bool traces_rays(const std::vector<isa::Program>& programs) {
+bool program_traces_rays(const std::vector<isa::Program>& programs) {
   return std::any_of(programs.begin(), programs.end(), [](const isa::Program& program) {
     return std::any_of(program.code.begin(), program.code.end(), [](const isa::Inst& inst) {
       const isa::Effect effect = isa::op_table()[inst.op].effect;
@@ -65,7 +65,7 @@ CompilerParams compiler_for(const GpuParams& gpu) {
 }
 
 void add_traversal(std::vector<isa::Program>& programs, const GpuParams& gpu, frontend::ShaderCache* cache) {
-  if (gpu.rt.unit != rt::kSoftware || !traces_rays(programs)) return;
+  if (gpu.rt.unit != rt::kSoftware || !program_traces_rays(programs)) return;
   check(gpu);
   Diagnostics warnings;
   const std::string name(kName);

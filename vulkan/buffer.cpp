@@ -30,6 +30,7 @@ Address BufferParts::open(mem::AddressSpace& memory, Address address, uint64_t b
   if (number >= slots.size() || first > slots[number].bytes || bytes >= slots[number].bytes - first)
     return address;
   const mem::AddressSpace::Slot slot = slots[number];
+  if (slot.ended || !slot.data) return address;
   const auto [found, is_new] = windows_at_.try_emplace(AddressPart{address, bytes}, 0);
   if (is_new)
     found->second = memory.open_window(fmt::format("{} bytes at address {:#x}", bytes, address), slot.backing,

@@ -62,7 +62,11 @@ std::vector<pipeline::MicromapUsage> usage_of(uint32_t count, const VkMicromapUs
 }
 
 pipeline::FindBytes find_bytes(const Device& device, bool on_host) {
-  if (on_host) return [](Address at, uint64_t) { return reinterpret_cast<const std::byte*>(uintptr_t(at)); };
+  if (on_host)
+    return [](Address at, uint64_t) -> const std::byte* {
+      constexpr Address kFirstPage = 4096;  // in which a null pointer with an offset lies
+      return at < kFirstPage ? nullptr : reinterpret_cast<const std::byte*>(uintptr_t(at));
+    };
   return [&memory = device.memory](Address at, uint64_t bytes) -> const std::byte* {
     return memory.find(at, bytes);
   };

@@ -84,6 +84,17 @@ struct ImageDescription {
   SourceLocation where;
 };
 
+// Holds opacity micromaps as a file has them: one map for each text of digits, each of which is a state.
+struct OpacityDescription {
+  struct Map {
+    rt::MicromapFormat format;
+    std::vector<uint8_t> states;  // packed, as rt::Micromaps::states
+  };
+  std::vector<Map> maps;
+  std::vector<int32_t> index;  // as rt::Micromaps::index; empty: each triangle has the map of its number
+  SourceLocation where;
+};
+
 struct GeometryDescription {
   std::string mesh;  // an OBJ or glTF file
   std::vector<float> vertices;
@@ -91,6 +102,7 @@ struct GeometryDescription {
   std::vector<rt::Bounds> aabbs;
   std::array<float, 12> transform = rt::kIdentity;
   bool opaque = true, no_duplicate_any_hit = false;
+  std::optional<OpacityDescription> opacity;
   SourceLocation where;
 };
 

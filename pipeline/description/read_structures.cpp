@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/description/read.h"
+#include "pipeline/description/read_opacity.h"
 
 namespace glint::pipeline {
 namespace {
@@ -77,6 +78,7 @@ GeometryDescription read_geometry(Reading& r, const Value& value) {
                          {float(boxes[i + 3]), float(boxes[i + 4]), float(boxes[i + 5])}});
   out.opaque = t.flag("opaque", true);
   out.no_duplicate_any_hit = t.flag("no_duplicate_any_hit", false);
+  out.opacity = read_opacity(r, t, value.where);
   out.transform = read_transform(r, t);
   t.finish();
   const int kinds = int(!out.mesh.empty()) + int(!out.vertices.empty()) + int(!boxes.empty());
@@ -84,6 +86,8 @@ GeometryDescription read_geometry(Reading& r, const Value& value) {
     r.errors.error(
         value.where,
         "a geometry has one of 'file' (.obj, .gltf, .glb), 'vertices' (and 'indices') and 'aabbs'");
+  if (out.opacity && !boxes.empty())
+    r.errors.error(value.where, "boxes have no opacity maps, only triangles");
   if (out.vertices.size() % 3)
     r.errors.error(value.where,
                    fmt::format("'vertices' has {} numbers, expected three per vertex", out.vertices.size()));
@@ -104,7 +108,9 @@ uint32_t read_flags(Reading& r, TableReader& t) {
       {"facing_cull_disable", rt::instance_flag::kFacingCullDisable},
       {"flip_facing", rt::instance_flag::kFlipFacing},
       {"force_opaque", rt::instance_flag::kForceOpaque},
-      {"force_no_opaque", rt::instance_flag::kForceNoOpaque}};
+      {"force_no_opaque", rt::instance_flag::kForceNoOpaque},
+      {"force_opacity_2_states", rt::instance_flag::kForceMicromaps2State},
+      {"disable_opacity_maps", rt::instance_flag::kDisableMicromaps}};
   uint32_t out = 0;
   for (const std::string& name : t.texts("flags")) {
     const auto found =
@@ -113,7 +119,8 @@ uint32_t read_flags(Reading& r, TableReader& t) {
       out |= found->second;
     else
       r.errors.error(t.take("flags")->where, fmt::format("'{}' is not a flag of an instance", name),
-                     "the flags are facing_cull_disable, flip_facing, force_opaque and force_no_opaque");
+                     "the flags are facing_cull_disable, flip_facing, force_opaque, force_no_opaque, "
+                     "force_opacity_2_states and disable_opacity_maps");
   }
   return out;
 }

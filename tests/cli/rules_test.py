@@ -38,6 +38,7 @@ DOWN = ((0, 0, 1), (0, 0, -1))  # meets the triangle at 1
 # It is clockwise, seen from above in the left-handed space of Vulkan's rule.
 TRIANGLE = "vertices = [[-1, -1, 0], [1, -1, 0], [0, 1, 0]]"
 LEVEL = '[[bottom_level]]\nname = "{name}"\n[[bottom_level.geometry]]\n{geometry}\n'
+FILTER = '[machine]\nset = ["rt.leaf_filter=micromaps"]\n'
 HIT = '[[hit]]\nclosest_hit = "probe.rchit"\ndata = {{ tag = {tag} }}\n'
 
 
@@ -114,6 +115,47 @@ class Rays(RulesTest):
         self.assertEqual(self.shoot(flags=8, ends=((0, 100), (5, 100))), [UNTOUCHED, MISS])
         self.assertEqual(self.shoot(flags=13, ends=((0, 100), (5, 100))), [UNTOUCHED, MISS])
         self.assertEqual(self.shoot(hits="[[hit]]\n"), [UNTOUCHED])
+
+    def opacity(self, keys, flags=0, more="", at=(0, -0.3)):
+        """Returns what became of a ray through a triangle with these keys: "miss", "hit", or "asked" where its any-hit shader ran."""
+        self.write("probe.rmiss", HEAD + "layout(location = 0) rayPayloadInEXT vec4 payload;\nvoid main() { payload.y = -1.0; }\n")
+        (seen,) = self.shoot(instance(more), flags, hits='[[hit]]\nclosest_hit = "probe.rchit"\nany_hit = "drop.rahit"\ndata = { tag = 7 }\n',
+                             geometry=TRIANGLE + "\nopaque = false\n" + keys, more=FILTER, ray=((*at, 1), (0, 0, -1)))
+        return {-9: "miss", -5: "asked", 1: "hit"}[seen[0]]
+
+    def test_opacity_maps_decide_parts_of_a_triangle_and_flags_force_2_states(self):
+        # The parts of level 1 are those at corner 0, in the middle, at corner 1 and at corner 2.
+        for part, at in enumerate(((-0.7, -0.8), (0, -0.3), (0.7, -0.8), (0, 0.7))):
+            digits = "".join("1" if i == part else "0" for i in range(4))
+            self.assertEqual(self.opacity(f'opacity_maps = ["{digits}"]', at=at), "hit")
+            digits = digits.replace("1", "2").replace("0", "1")
+            self.assertEqual(self.opacity(f'opacity_maps = ["{digits}"]', at=at), "asked")
+        for map, state, forced in (("0", "miss", "miss"), ("1", "hit", "hit"), ("1201", "asked", "miss"), ("1301", "asked", "hit")):
+            keys = f'opacity_maps = ["{map}"]'
+            self.assertEqual(self.opacity(keys), state)
+            self.assertEqual(self.opacity(keys, flags=1024), forced)  # gl_RayFlagsForceOpacityMicromap2StateEXT
+            self.assertEqual(self.opacity(keys, more='flags = ["force_opacity_2_states"]'), forced)
+            self.assertEqual(self.opacity(keys, more='flags = ["disable_opacity_maps"]'), "asked")
+        for index, state in (("-1", "miss"), ("-2", "hit"), ("-3", "asked"), ("-4", "asked"), ("1", "hit")):
+            self.assertEqual(self.opacity(f'opacity_maps = ["{"0" * 4096}", "{"1" * 16}"]\nopacity_index = [{index}]'), state)
+
+    def test_opacity_maps_that_cannot_be_are_refused(self):
+        boxes = "aabbs = [[0, 0, 0, 1, 1, 1]]"
+        for geometry, filter, told in ((TRIANGLE + '\nopacity_maps = ["012"]', FILTER, "'012' is no map: it has 3 characters"),
+                                       (TRIANGLE + '\nopacity_maps = ["014x"]', FILTER, "'014x' is no map"),
+                                       (TRIANGLE + '\nopacity_maps = [""]', FILTER, "'' is no map"),
+                                       (TRIANGLE + f'\nopacity_maps = ["{"0" * 16384}"]', FILTER, "is no map: it has 16384 characters"),
+                                       (TRIANGLE + '\nopacity_maps = ["1"]\nopacity_index = [1]', FILTER, "1 names no map: there are 1 maps"),
+                                       (TRIANGLE + "\nopacity_index = [-5]", FILTER, "-5 names no map"),
+                                       (TRIANGLE + '\nopacity_maps = ["1", "0"]', FILTER, "those of 2 triangles, and the geometry has 1"),
+                                       (TRIANGLE + '\nopacity_maps = ["1"]', "", 'rt.leaf_filter = "none" asks none'),
+                                       (boxes + '\nopacity_maps = ["1"]', FILTER, "boxes have no opacity maps")):
+            text = f'[raygen]\nshader = "probe.rgen"\n[[miss]]\nshader = "probe.rmiss"\n{HIT.format(tag=7)}[launch]\nsize = [1]\n' \
+                   "[push_constants]\ndata = [0, 0, 0, 0, 0]\n" + LEVEL.format(name="mesh", geometry=geometry) + filter + \
+                   "[[top_level]]\nbinding = 0\n" + instance() + '[[buffer]]\nbinding = 1\ntype = "f32"\ncount = 4\n' \
+                   '[[buffer]]\nbinding = 2\ntype = "f32"\ndata = [0, 0, 1, 0, 0, 0, -1, 100]\n'
+            done = self.glint(self.write("p.toml", text), code=2)
+            self.assertIn(told, done.stderr)
 
     def test_triangles_without_area_are_never_hit(self):
         for geometry in ("vertices = [[-1, 0, 0], [1, 0, 0], [0, 0, 0]]", "vertices = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]", "vertices = [[-1, -1, 0], [1, 1, 0], [-1, -1, 0]]"):
