@@ -99,8 +99,8 @@ bool counts_up(const isa::OpRow& op, const isa::Inst& inst, const exec::Image& i
 }
 
 bool is_value(const IssueRow& row, const isa::OpRow& op) {
-  return op.effect == Effect::None && row.finish == Finish::Fixed && row.pipe != Pipe::Memory &&
-         row.pipe != Pipe::Const && !row.is_sequence && !row.is_whole &&
+  return op.effect == Effect::None && !isa::has_lane_mask(op) && row.finish == Finish::Fixed &&
+         row.pipe != Pipe::Memory && row.pipe != Pipe::Const && !row.is_sequence && !row.is_whole &&
          row.num_uses <= IssueRow::kFirstUses && row.num_defs <= 1;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <utility>
+#include <vector>
 
 #include "base/check.h"
 #include "exec/ray_specials.h"
@@ -21,7 +22,7 @@ bool Control::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& ro
   const uint32_t target = uint32_t(inst.imm);
   switch (row.effect) {
     case Effect::Branch:
-      return branch(warp, target);
+      return world_.image->code[simt.pc].may_wait ? branch_back(warp, target) : branch(warp, target);
     case Effect::BranchIndexed:
       return branch_indexed(warp, inst);
     case Effect::Call:
@@ -53,6 +54,9 @@ bool Control::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& ro
       // nothing else to do, and so does waiting for copies.
       ++simt.pc;
       return true;
+    case Effect::Yield:  // go_round() does it where the loop goes back.
+      ++simt.pc;
+      return true;
     default:
       GLINT_PANIC("{} is not a control effect", row.name);
   }
@@ -80,6 +84,63 @@ bool Control::branch(WarpContext& warp, uint32_t target) {
     simt.push_path(target, exec);
     simt.active = stay;
     ++simt.pc;
+  }
+  return true;
+}
+
+// Branches back to the head of a loop in which lanes may wait for others of their warp.
+bool Control::branch_back(WarpContext& warp, uint32_t target) {
+  const uint32_t pc = warp.simt.pc;
+  if (!branch(warp, target)) return false;
+  if (warp.simt.pc == target) go_round(warp, pc);
+  return true;
+}
+
+// Lets lanes that go back at the end `pc` of a loop in vain give way to others of their warp, which may hold
+// what they wait for. Lanes that have met at a join may go on without those of the loop then. So does
+// hardware that schedules threads independently: its compiler puts a yield into such loops, and lanes that
+// have yielded are not waited for (Diamos et al., US patent 10,067,768). Choice: a turn is in vain if none of
+// the lanes has stored. On an H200 a lock goes on as if lanes yielded in each turn (bench/probes/locks.cu).
+// Here they do so after 16 turns in vain of the same lanes, and in each turn of a loop in which they have
+// done so last, because loops that wait for nobody keep their lanes together then.
+void Control::go_round(WarpContext& warp, uint32_t pc) {
+  constexpr uint32_t kTurns = 16;
+  SimtStack& simt = warp.simt;
+  WaitingLoop& loop = warp.waiting_loop;
+  const bool in_vain = loop.effects == warp.effects, is_same = loop.lanes == simt.active && in_vain;
+  loop.turns = is_same ? loop.turns + 1 : 0;
+  loop.lanes = simt.active;
+  loop.effects = warp.effects;
+  if (loop.turns < kTurns && !(in_vain && loop.waited == pc)) return;
+  const std::vector<SimtStack::Entry>& entries = simt.entries();
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const size_t index = (loop.next + i) % entries.size();
+    const SimtStack::Entry& entry = entries[index];
+    const bool may_run = entry.kind == SimtStack::Kind::Join || simt.can_run(index);
+    if (!may_run || !entry.lanes || !simt.is_in_frame(index)) continue;
+    loop.next = uint32_t(index + 1);
+    loop.turns = 0;
+    loop.waited = pc;
+    return simt.yield_to(index);
+  }
+}
+
+// Lanes that have gone on while others of their warp waited come to a barrier, or to an op across the lanes
+// of a mask, before these. PTX wants all of them there. So they wait, and go on as one path, as on hardware,
+// where a barrier counts threads. Where no other path can run, they go on as they are.
+bool Control::meet(WarpContext& warp, uint32_t pc) {
+  SimtStack& simt = warp.simt;
+  const Step& step = world_.image->code[pc];
+  const bool is_barrier = step.effect == Effect::Barrier;
+  simt.take_waiting(is_barrier);
+  LaneMask wanted = simt.live();
+  if (!is_barrier && simt.active)
+    wanted &= warp.regs.read(step.inst.operand[step.row->operands.count - 1])[std::countr_zero(simt.active)];
+  for (size_t i = 0; i < simt.depth(); ++i) {
+    if (!(wanted & ~simt.active & simt.entries()[i].lanes) || !simt.can_run(i) || !simt.is_in_frame(i))
+      continue;
+    simt.wait_for(i);
+    return false;
   }
   return true;
 }

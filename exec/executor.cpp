@@ -49,6 +49,15 @@ void Executor::execute_effect(WarpContext& warp, Issued& issued, Cycle now) {
   if (reads_clock_) [[unlikely]]
     fill_clock(*world_.image, warp, now, clock_mhz_);
   if (seen_.is_used()) seen_.view().begin(now);
+  if (warp.simt.has_yielded() && world_.image->code[issued.pc].meets) [[unlikely]] {
+    if (!control_.meet(warp, issued.pc)) {
+      issued.lanes = 0;
+      ++warp.instructions;
+      return;
+    }
+    issued.active = warp.simt.active;
+    warp.regs.exec = lanes_at(warp, issued.pc);
+  }
   bool ok = true;
   if (row.effect == Effect::None) {
     row.run(warp.regs, inst, row);
@@ -87,6 +96,7 @@ bool Executor::dispatch(WarpContext& warp, const isa::Inst& inst, const isa::OpR
     case EffectFamily::Memory:
       return memory_.run(warp, inst, row);
     case EffectFamily::Image:
+      warp.effects += row.effect == Effect::SurfaceStore;
       return images_.run(warp, inst, row);
     case EffectFamily::Control:
       return control_.run(warp, inst, row);

@@ -86,7 +86,7 @@ class Executor {
     const LaneMask exec = lanes_at(warp, pc);
     warp.regs.exec = exec;
     Issued issued{pc, &step.inst, step.row, exec, warp.simt.active, false};
-    if (step.effect != isa::Effect::None || reads_clock_) [[unlikely]] {
+    if (!step.is_value || reads_clock_) [[unlikely]] {
       execute_effect(warp, issued, now);
       return issued;
     }

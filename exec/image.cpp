@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/image.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
+#include <span>
 #include <utility>
 
 #include "base/check.h"
+#include "isa/atomic.h"
+#include "isa/barrier.h"
 
 namespace glint::exec {
 namespace {
@@ -77,6 +81,24 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   image.programs.push_back(program);
 }
 
+// Lanes of a loop wait for others of their warp if they ask for a lock there or look at a word, a barrier or,
+// behind a fence, at what others have written, or if the program says so. Choice: loops that only load are
+// left out, because most of them wait for nobody.
+bool may_wait(const Step& step) {
+  using isa::Effect;
+  return step.effect == Effect::Yield || step.effect == Effect::Mbarrier || isa::gives_old_value(*step.row) ||
+         (step.effect == Effect::Fence && isa::FenceScope(step.row->detail) != isa::FenceScope::Warp);
+}
+
+void mark_waiting_loops(Image& image) {
+  for (size_t pc = 0; pc < image.code.size(); ++pc) {
+    Step& step = image.code[pc];
+    if (step.effect != isa::Effect::Branch || size_t(step.inst.imm) > pc) continue;
+    const auto body = std::span(image.code).subspan(size_t(step.inst.imm), pc - size_t(step.inst.imm));
+    step.may_wait = std::ranges::any_of(body, may_wait);
+  }
+}
+
 }  // namespace
 
 Image link(const std::vector<isa::Program>& programs) {
@@ -87,6 +109,7 @@ Image link(const std::vector<isa::Program>& programs) {
   for (Step& step : image.code)
     step.target_is_join =
         step.effect == isa::Effect::Branch && image.code[size_t(step.inst.imm)].effect == isa::Effect::Join;
+  mark_waiting_loops(image);
   image.constants = allocate_rows(constants.size());
   uint32_t* const table = image.constants.get();
   for (size_t i = 0; i < constants.size(); ++i)

@@ -15,6 +15,7 @@
 #include "exec/print_log.h"
 #include "exec/traversal_record.h"
 #include "exec/warp_layout.h"
+#include "isa/barrier.h"
 #include "isa/message.h"
 #include "isa/op_row.h"
 #include "isa/program.h"
@@ -53,13 +54,22 @@ inline Rows allocate_rows(size_t count) {
 // Holds an instruction, and what executing it needs of its row, in one cache line of the host.
 struct alignas(64) Step {
   Step(const isa::Inst& instruction, const isa::OpRow& its_row)
-      : inst(instruction), effect(its_row.effect), row(&its_row), run(its_row.run) {}
+      : inst(instruction),
+        effect(its_row.effect),
+        meets(its_row.effect == isa::Effect::Barrier || isa::has_lane_mask(its_row)),
+        row(&its_row),
+        run(its_row.run) {
+    is_value = its_row.effect == isa::Effect::None && !meets;
+  }
 
   isa::Inst inst;
-  isa::Effect effect;           // OpRow::effect
-  bool target_is_join = false;  // It is a branch that goes to a `join`.
-  const isa::OpRow* row;        // op_table()[inst.op]
-  isa::Handler run;             // OpRow::run
+  isa::Effect effect;               // OpRow::effect
+  bool is_value = false;            // It does nothing but compute values of its own lanes.
+  bool target_is_join : 1 = false;  // It is a branch that goes to a `join`.
+  bool may_wait : 1 = false;  // It jumps back in a loop in which lanes may wait for others of their warp.
+  bool meets : 1;             // Lanes that have parted come together here (Control::meet).
+  const isa::OpRow* row;      // op_table()[inst.op]
+  isa::Handler run;           // OpRow::run
 };
 static_assert(sizeof(Step) == 64);
 

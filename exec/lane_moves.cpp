@@ -25,7 +25,7 @@ constexpr bool stays(Special special) {
 }
 
 bool is_meeting(const Entry& entry) {
-  return entry.kind != SimtStack::Kind::Path;
+  return entry.kind == SimtStack::Kind::Join || entry.kind == SimtStack::Kind::Call;
 }
 
 bool is_same_meeting(const Entry& a, const Entry& b) {
@@ -123,8 +123,8 @@ void swap_specials(isa::Warp& a, int i, isa::Warp& b, int j, const Image& image)
 }  // namespace
 
 bool can_exchange(const WarpContext& a, const WarpContext& b) {
-  return a.simt.pc == b.simt.pc && a.depth == b.depth && a.callables == b.callables &&
-         for_each_meeting(a.simt, b.simt, [&](size_t i, size_t j) {
+  return !a.simt.has_switched() && !b.simt.has_switched() && a.simt.pc == b.simt.pc && a.depth == b.depth &&
+         a.callables == b.callables && for_each_meeting(a.simt, b.simt, [&](size_t i, size_t j) {
            return is_same_meeting(a.simt.entries()[i], b.simt.entries()[j]);
          });
 }

@@ -188,7 +188,8 @@ void start_warp(const World& world, WarpContext& warp, Block& block, uint32_t wa
   block.warps[warp_in_block] = &warp;
   warp.depth = warp.callables = 0;
   warp.next_time.fill(0);
-  warp.instructions = 0;
+  warp.instructions = warp.effects = 0;
+  warp.waiting_loop = {};
   warp.waiting_for_rays = warp.waiting_at_barrier = warp.waits_for_phase = false;
 
   warp.simt.start(image.shaders[world.raygen].entry, lanes_of(world, warp.warp_index, warp_in_block));

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "exec/access_words.h"
+#include "isa/atomic.h"
 #include "isa/descriptors.h"
 #include "isa/generic_address.h"
 
@@ -179,6 +180,7 @@ void MemoryOps::move_rows(WarpContext& warp, const isa::Inst& inst, Effect effec
                           Space space, LaneMask lanes, const LanePlaces& at) {
   const bool seen = seen_.is_used() && space == Space::Global;
   if (effect == Effect::Store) {
+    ++warp.effects;
     changes_ += !seen;
     seen ? seen_.store(warp, inst, shape, lanes, at) : store_rows(warp, inst, shape, lanes, at);
   } else if (seen && seen_.view().touched()) {
@@ -208,6 +210,18 @@ void MemoryOps::move_beginnings(WarpContext& warp, const isa::Inst& inst, const 
   });
 }
 
+// Returns whether lanes that go round in a loop have done something with the atomic (WarpContext::effects):
+// they have neither asked for a lock nor looked at a word by adding 0 to it.
+bool MemoryOps::has_effect(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
+                           LaneMask lanes) {
+  if (!isa::gives_old_value(row)) return true;
+  if (isa::exchanges(row)) return false;
+  bool any = false;
+  for_each_lane(
+      lanes, [&](int lane) { any |= read_operand(warp.regs, inst.operand[2], lane, row.memory.bytes) != 0; });
+  return any;
+}
+
 // Runs an atomic. Lanes take turns, the lowest first. Choice: PTX leaves their order open.
 bool MemoryOps::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, Space space,
                        LaneMask lanes) {
@@ -220,6 +234,7 @@ bool MemoryOps::modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRo
   const bool has_second = row.operands.count > first + 1;
   if (returns && inside != lanes) [[unlikely]]
     load_zeros(warp, inst, row.memory, lanes & ~inside);
+  warp.effects += has_effect(warp, inst, row, inside);
   if (seen_.is_used() && space == Space::Global) return seen_.modify(warp, inst, row, inside, at), true;
   for_each_lane(inside, [&](int lane) {
     uint64_t old = 0;

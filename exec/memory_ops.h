@@ -57,6 +57,8 @@ class MemoryOps {
               LaneMask lanes);
   bool refuse(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
               LaneMask lanes, const std::string& why);
+  static bool has_effect(const WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row,
+                         LaneMask lanes);
   bool locate(WarpContext& warp, const isa::OpRow& row, isa::Space space, LaneMask& lanes, LanePlaces& at);
   bool pass_outside(const WarpContext& warp, int lane, const Reach& reach, Address address);
   bool pass_misaligned(const WarpContext& warp, int lane, const Reach& reach, Address address);

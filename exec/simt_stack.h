@@ -5,13 +5,17 @@
 //  - Join: lanes that have arrived at the reconvergence point `pc` (a `join` instruction) and wait for the
 //    rest.
 //  - Call: lanes that have returned from a call and wait for the rest; they resume at `pc`.
-// When the running lanes are used up, the top entry is taken: a Path runs, and a Join or Call whose lanes
-// have all arrived resumes them. Because lanes arrive at any enclosing Join, not only at the innermost,
-// break, continue and early exits out of several constructs need no special case.
+// Each entry, and the path that runs, knows the Join or Call that encloses it. When the running lanes are
+// used up, their path has ended. If it was the last one that its Join or Call waited for, the lanes that have
+// arrived there go on, and otherwise the last Path runs. Because lanes arrive at any enclosing Join, not only
+// at the innermost, break, continue and early exits out of several constructs need no special case.
+//
+// Whoever wants another order may let a Path run before the running one has ended (switch_to).
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -20,16 +24,22 @@ namespace glint::exec {
 
 class SimtStack {
  public:
-  enum class Kind : uint8_t { Path, Join, Call };
+  // An entry that has gone is a place for another one.
+  enum class Kind : uint8_t { Path, Join, Call, Gone };
+  static constexpr uint32_t kNone = ~0u;
   struct Entry {
     Kind kind;
     uint32_t pc;
     LaneMask lanes;
-    uint32_t depth = 0;         // Call: trace depth to return to
-    uint32_t shader = 0;        // Call: the caller's shader
-    uint32_t callables = 0;     // Call: callable depth to return to
-    bool is_function = false;   // Call: of a function of the same shader, not of another shader
-    bool is_traversal = false;  // Call: of the program that walks rays
+    uint32_t enclosing = kNone;  // the index of the Join or Call around it
+    uint32_t open = 0;           // Join, Call: paths, joins and calls right inside of it that have not ended
+    uint32_t depth = 0;          // Call: trace depth to return to
+    uint32_t shader = 0;         // Call: the caller's shader
+    uint32_t callables = 0;      // Call: callable depth to return to
+    bool is_function = false;    // Call: of a function of the same shader, not of another shader
+    bool is_traversal = false;   // Call: of the program that walks rays
+    bool has_begun = false;      // Path: it has run before, and another one was preferred
+    bool waits = false;          // Path: it waits at its instruction for other lanes
   };
 
   uint32_t pc = 0;
@@ -37,36 +47,45 @@ class SimtStack {
 
   void start(uint32_t entry_pc, LaneMask lanes) {
     entries_.clear();
+    enclosing_ = kNone;
+    gone_ = 0;
+    has_switched_ = has_yielded_ = false;
     pc = entry_pc;
     active = lanes;
   }
   bool finished() const { return active == 0; }
 
-  void push_reconvergence(uint32_t join_pc) { entries_.push_back({Kind::Join, join_pc, 0}); }
-  void push_path(uint32_t path_pc, LaneMask lanes) { entries_.push_back({Kind::Path, path_pc, lanes}); }
+  void push_reconvergence(uint32_t join_pc) { enclose({Kind::Join, join_pc, 0}); }
+  void push_path(uint32_t path_pc, LaneMask lanes) {
+    if (enclosing_ != kNone) ++entries_[enclosing_].open;
+    push({Kind::Path, path_pc, lanes, enclosing_});
+  }
   void push_call(uint32_t return_pc, LaneMask arrived, uint32_t depth, uint32_t shader,
                  uint32_t callables = 0, bool is_function = false) {
-    entries_.push_back({Kind::Call, return_pc, arrived, depth, shader, callables, is_function});
+    Entry call{Kind::Call, return_pc, arrived};
+    call.depth = depth;
+    call.shader = shader;
+    call.callables = callables;
+    call.is_function = is_function;
+    enclose(call);
   }
 
   // Notes that the call pushed last is of the program that walks rays.
-  void mark_traversal() { entries_.back().is_traversal = true; }
+  void mark_traversal() { entries_[enclosing_].is_traversal = true; }
 
   // Lets lanes that reach the join at `join_pc` wait in its entry. The caller then removes them from the
   // running set. Returns false when no enclosing ssy names the place, which is a malformed program.
   bool arrive(uint32_t join_pc, LaneMask lanes) {
-    for (size_t i = entries_.size(); i-- > 0;) {
-      if (entries_[i].kind == Kind::Call) return false;
-      if (entries_[i].kind == Kind::Join && entries_[i].pc == join_pc) {
-        entries_[i].lanes |= lanes;
-        return true;
-      }
+    for (uint32_t i = enclosing_; i != kNone && entries_[i].kind == Kind::Join; i = entries_[i].enclosing) {
+      if (entries_[i].pc != join_pc) continue;
+      entries_[i].lanes |= lanes;
+      return true;
     }
     return false;
   }
   // Returns the innermost call, of a shader or of either kind, or null when nobody called.
   const Entry* innermost_call(bool of_shader) const {
-    for (size_t i = entries_.size(); i-- > 0;)
+    for (uint32_t i = enclosing_; i != kNone; i = entries_[i].enclosing)
       if (entries_[i].kind == Kind::Call && !(of_shader && entries_[i].is_function)) return &entries_[i];
     return nullptr;
   }
@@ -85,22 +104,64 @@ class SimtStack {
     return lanes;
   }
 
-  // Takes entries while no lanes run, until some run or the stack is empty. When a Call entry resumed, it
-  // returns true and puts the entry into *resumed_call.
+  // While no lanes run, ends the path that ran and takes what comes next, until some lanes run or none are
+  // left. When a Call entry resumed, it returns true and puts the entry into *resumed_call.
   bool resume_next(Entry* resumed_call) {
     bool resumed = false;
     while (active == 0 && !entries_.empty()) {
-      const Entry top = entries_.back();
-      entries_.pop_back();
-      active = top.lanes;
-      pc = top.kind == Kind::Join ? top.pc + 1 : top.pc;
-      if (top.kind == Kind::Call) {  // Even with no lanes left, its context is the caller's again.
-        *resumed_call = top;
+      const bool is_last = enclosing_ != kNone && --entries_[enclosing_].open == 0;
+      const Entry next = take(is_last ? enclosing_ : last_path());
+      active = next.lanes;
+      pc = next.kind == Kind::Join ? next.pc + 1 : next.pc;
+      enclosing_ = next.enclosing;
+      if (next.kind == Kind::Call) {  // Even with no lanes left, its context is the caller's again.
+        *resumed_call = next;
         resumed = true;
       }
     }
     return resumed;
   }
+
+  // Returns whether entry `index` is in the same shader's or function's run as the path that runs, so that
+  // both see the same calls and traces.
+  bool is_in_frame(size_t index) const {
+    return call_around(entries_[index].enclosing) == call_around(enclosing_);
+  }
+  // Lets the lanes of entry `index` run, a Path or a Join in the frame of the path that runs. The latter
+  // waits as a Path. Lanes that have arrived at a Join go on without the others, which arrive there later.
+  void switch_to(size_t index) {
+    const Path from{pc, active, enclosing_};
+    run_entry(index);
+    push_waiting(from, false);
+  }
+  // Does the same for lanes that wait in vain for others of their warp.
+  void yield_to(size_t index) {
+    switch_to(index);
+    has_yielded_ = true;
+  }
+  // Lets the path of entry `index` run, and the running one wait at its instruction until take_waiting() is
+  // called there, or until no other one can run.
+  void wait_for(size_t index) {
+    const Path from{pc, active, enclosing_};
+    run_entry(index);
+    push_waiting(from, true);
+  }
+  // Returns whether entry `index` is a path that does not wait at its instruction.
+  bool can_run(size_t index) const { return entries_[index].kind == Kind::Path && !entries_[index].waits; }
+  // Takes the lanes that wait at the instruction of the running path into that path: those inside of the same
+  // joins, or with `from_anywhere` all of the frame.
+  void take_waiting(bool from_anywhere) {
+    for (size_t i = entries_.size(); i-- > 0;) {
+      if (i >= entries_.size() || !entries_[i].waits || entries_[i].pc != pc || !is_in_frame(i)) continue;
+      if (entries_[i].enclosing != enclosing_ && !from_anywhere) continue;
+      const Entry from = take(uint32_t(i));
+      active |= from.lanes;
+      leave(from.enclosing);
+    }
+  }
+  // Return whether paths have changed before they ended, and whether one has yielded, since the start.
+  bool has_switched() const { return has_switched_; }
+  bool has_yielded() const { return has_yielded_; }
 
   size_t depth() const { return entries_.size(); }
   const std::vector<Entry>& entries() const { return entries_; }
@@ -108,7 +169,86 @@ class SimtStack {
   LaneMask& lanes_at(size_t index) { return entries_[index].lanes; }
 
  private:
+  struct Path {
+    uint32_t pc;
+    LaneMask lanes;
+    uint32_t enclosing;
+  };
+
+  void run_entry(size_t index) {
+    Entry& to = entries_[index];
+    const bool is_join = to.kind == Kind::Join;
+    pc = is_join ? to.pc + 1 : to.pc;
+    active = std::exchange(to.lanes, 0);
+    enclosing_ = to.enclosing;
+    if (is_join && enclosing_ != kNone) ++entries_[enclosing_].open;
+    if (!is_join) take(uint32_t(index));
+    has_switched_ = true;
+  }
+  void push_waiting(const Path& from, bool waits) {
+    Entry waiting{Kind::Path, from.pc, from.lanes, from.enclosing};
+    waiting.has_begun = true;
+    waiting.waits = waits;
+    push(waiting);
+  }
+  // Notes that a path inside of entry `index` has gone elsewhere. If it was the last one there, the lanes
+  // that have arrived are a path, or there is nothing left to wait for.
+  void leave(uint32_t index) {
+    while (index != kNone && --entries_[index].open == 0) {
+      Entry& join = entries_[index];
+      if (join.lanes) {
+        join.kind = Kind::Path;
+        ++join.pc;
+        return;
+      }
+      index = take(index).enclosing;
+    }
+  }
+  uint32_t push(const Entry& entry) {
+    if (gone_ > 0) [[unlikely]] {
+      --gone_;
+      uint32_t place = 0;
+      while (entries_[place].kind != Kind::Gone) ++place;
+      entries_[place] = entry;
+      return place;
+    }
+    entries_.push_back(entry);
+    return uint32_t(entries_.size() - 1);
+  }
+  // Pushes a Join or Call, which from now on encloses the path that runs. What enclosed that path before
+  // waits for the new entry in its place.
+  void enclose(Entry entry) {
+    entry.enclosing = enclosing_;
+    entry.open = 1;
+    enclosing_ = push(entry);
+  }
+  // Removes an entry and returns it. Entries leave from the end, unless paths were switched.
+  Entry take(uint32_t index) {
+    const Entry entry = entries_[index];
+    entries_[index].kind = Kind::Gone;
+    entries_[index].lanes = 0;
+    entries_[index].waits = false;
+    ++gone_;
+    while (!entries_.empty() && entries_.back().kind == Kind::Gone) {
+      entries_.pop_back();
+      --gone_;
+    }
+    return entry;
+  }
+  uint32_t last_path() const {
+    auto index = uint32_t(entries_.size() - 1);
+    while (entries_[index].kind != Kind::Path) --index;
+    return index;
+  }
+  uint32_t call_around(uint32_t index) const {
+    while (index != kNone && entries_[index].kind != Kind::Call) index = entries_[index].enclosing;
+    return index;
+  }
+
   std::vector<Entry> entries_;  // It grows once to the program's nesting, then allocates nothing.
+  uint32_t enclosing_ = kNone;  // what encloses the path that runs
+  uint32_t gone_ = 0;           // entries of the kind Gone
+  bool has_switched_ = false, has_yielded_ = false;
 };
 
 }  // namespace glint::exec

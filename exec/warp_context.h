@@ -61,6 +61,15 @@ struct HitObject {
   uint32_t time = 0;  // bits of a float
 };
 
+// Notes how long the running lanes have gone round in a loop in vain (exec/control.cpp).
+struct WaitingLoop {
+  LaneMask lanes = 0;     // the lanes that went back last
+  uint64_t effects = 0;   // WarpContext::effects then
+  uint32_t turns = 0;     // turns since these were others
+  uint32_t waited = ~0u;  // the end of the loop in which the warp has given way last
+  uint32_t next = 0;      // the entry of the SIMT stack from which on the next lanes are looked for
+};
+
 // Holds the state of a warp. The members that every instruction touches come first and lie together.
 struct WarpContext {
   isa::Warp regs;
@@ -90,6 +99,11 @@ struct WarpContext {
   rt::RayState* rays = nullptr;  // one per lane, in `traced` or `queries`
   isa::Slot ray_answer = 0;      // predicate that receives the answer
   LaneMask walking = 0;          // the lanes of ray_lanes whose rays World::traversal walks
+
+  // This grows with every store to global or shared memory and to images, and with every atomic that does not
+  // take a lock.
+  uint64_t effects = 0;
+  WaitingLoop waiting_loop;
 
   // While it waits at a barrier, these are the barrier and the instruction that waits.
   uint32_t barrier = 0, barrier_pc = 0;

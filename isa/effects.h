@@ -58,6 +58,7 @@ enum class Effect : uint8_t {
   CopyGroup,  // cp.async.*_group: ends a group of copies, or waits for groups (isa/async_copy.h)
   Mbarrier,   // mbarrier.*: changes or asks a barrier in shared memory; OpRow::detail is its kind
               // (isa/mbarrier.h)
+  Yield,      // lanes that wait here may give way to others of their warp (exec/control.cpp)
   Count
 };
 
@@ -286,6 +287,10 @@ inline constexpr EffectRow kEffects[] = {
      .reads_memory = true,
      .writes_memory = true,
      .stages = {Stage::Compute}},
+    {.effect = Effect::Yield,
+     .family = EffectFamily::Control,
+     .finish = Finish::Control,
+     .freedom = {.may_copy = true}},
 };
 static_assert(std::size(kEffects) == size_t(Effect::Count), "every effect has a row");
 static_assert(

@@ -51,6 +51,7 @@ constexpr EffectTest kTests[] = {
     {Effect::Copy, "tests/ops/copy.cpp"},
     {Effect::CopyGroup, "tests/ops/control.cpp"},
     {Effect::Mbarrier, "tests/ops/control.cpp"},
+    {Effect::Yield, "tests/ops/control.cpp"},
 };
 static_assert(std::size(kTests) == size_t(Effect::Count));
 static_assert(

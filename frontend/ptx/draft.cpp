@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontend/ptx/draft.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "frontend/backend/flow_graph.h"
 
 namespace glint::frontend::ptx {
 namespace {
@@ -39,6 +42,21 @@ void append_end(VirtualBlock& out, const DraftBlock& block, const std::vector<Dr
 }
 
 }  // namespace
+
+void keep_yields_in_loops(Draft& draft) {
+  const int yield = isa::op_index("yield");
+  const auto is_yield = [&](const VirtualInst& inst) { return inst.op == yield; };
+  if (std::ranges::none_of(
+          draft.blocks, [&](const DraftBlock& block) { return std::ranges::any_of(block.code, is_yield); }))
+    return;
+  Edges next;
+  for (const DraftBlock& block : draft.blocks) next.push_back(block.successors());
+  Blocks in_loops;
+  for (const Loop& loop : natural_loops(next, draft.layout.front()))
+    in_loops.insert(loop.body.begin(), loop.body.end());
+  for (size_t block = 0; block < draft.blocks.size(); ++block)
+    if (!in_loops.contains(BlockId(block))) std::erase_if(draft.blocks[block].code, is_yield);
+}
 
 std::vector<VirtualBlock> lay_out(Draft draft) {
   std::vector<BlockId> place(draft.blocks.size(), kNoBlock);

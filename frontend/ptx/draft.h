@@ -36,6 +36,9 @@ struct Draft {
   std::vector<BlockId> layout;
 };
 
+// Removes the yields that do not lie in a loop, where no lane waits.
+void keep_yields_in_loops(Draft& draft);
+
 // Finds where lanes diverge and the place where they meet again at the latest, for which PTX has no
 // instructions.
 //

@@ -60,6 +60,7 @@ VirtualProgram KernelLowering::run() {
         error(entry_.position, fmt::format("label '{}' is the target of a branch but is not defined",
                                            draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
+  keep_yields_in_loops(draft_);
   if (options_.contract) contract(draft_, free_, program_);
   if (options_.shape) {
     expand_fields(draft_, program_);

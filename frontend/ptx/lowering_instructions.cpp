@@ -142,10 +142,11 @@ bool KernelLowering::lower_special(const Instruction& inst) {
                                                         {"vote", &KernelLowering::lower_old_warp_op},
                                                         {"shfl", &KernelLowering::lower_old_warp_op}};
   // These instructions are hints without a result.
-  static const std::set<std::string> kNothing{"prefetch", "prefetchu",      "applypriority", "nanosleep",
+  static const std::set<std::string> kNothing{"prefetch", "prefetchu",      "applypriority",
                                               "pmevent",  "griddepcontrol", "setmaxnreg"};
   const std::string& op = inst.words[0];
   if (kNothing.contains(op)) return true;
+  if (op == "nanosleep") return emit(isa::op_index("yield"), {}), true;
   const bool has_carry = has_word(inst.words, "cc") || op == "addc" || op == "subc" || op == "madc";
   if (has_carry) {
     lower_carry(inst);

@@ -17,6 +17,7 @@ void KernelLowering::lower_memory(const Instruction& inst) {
   if (form->releases) emit(fence, {});
   form->op == "ld" || form->op == "st" ? lower_access(inst, *form) : lower_atomic(inst, *form);
   if (form->acquires) emit(fence, {});
+  if (form->op == "ld" && form->is_strong) emit(isa::op_index("yield"), {});
 }
 
 void KernelLowering::lower_atomic(const Instruction& inst, const MemoryForm& form) {

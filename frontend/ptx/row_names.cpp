@@ -132,9 +132,8 @@ std::optional<MemoryForm> memory_form(const Words& words) {
   static constexpr std::array<std::string_view, 14> kFunctions{
       "add", "min", "max", "inc", "dec", "and", "or", "xor", "exch", "cas", "noftz", "ftz", "rn", "sat"};
   // These words say how caches and other threads take part, which changes nothing here.
-  static constexpr std::array<std::string_view, 17> kHints{
-      "weak", "relaxed", "volatile", "mmio", "cta", "cluster", "gpu", "sys",    "nc",
-      "ca",   "cg",      "cs",       "lu",   "cv",  "wb",      "wt",  "unified"};
+  static constexpr std::array<std::string_view, 14> kHints{
+      "weak", "cta", "cluster", "gpu", "sys", "nc", "ca", "cg", "cs", "lu", "cv", "wb", "wt", "unified"};
   for (size_t i = 1; i < words.size(); ++i) {
     const std::string head = words[i].substr(0, words[i].find("::"));
     if (is_one_of(head, kSpaces)) {
@@ -146,6 +145,8 @@ std::optional<MemoryForm> memory_form(const Words& words) {
     } else if (const auto type = type_of(words[i])) {
       form.type = *type;
       form.type_name = words[i];
+    } else if (words[i] == "volatile" || words[i] == "relaxed" || words[i] == "mmio") {
+      form.is_strong = true;
     } else if (words[i] == "acq_rel" || words[i] == "sc") {
       form.acquires = form.releases = true;
     } else if (words[i] == "acquire" || words[i] == "release") {

@@ -31,6 +31,7 @@ struct MemoryForm {
   std::string type_name;  // as written
   Type type;
   bool acquires = false, releases = false;
+  bool is_strong = false;  // other threads may write the place at the same time
 };
 std::optional<MemoryForm> memory_form(const Words& words);
 

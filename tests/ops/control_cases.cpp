@@ -263,6 +263,27 @@ ControlWords exchanged(uint32_t thread) {
   return {word, word};
 }
 
+// Lane 3 sets the word for which the others wait, and its path comes last.
+constexpr const char* kWait = R"(
+    mov.b32 %r5, 0;
+    st.shared.b32 [%r5], %r5;
+    setp.eq.u32 %p1, %r4, 3;
+    ssy MEET;
+    @%p1 bra SET;
+AGAIN:
+    yield;
+    ld.shared.b32 %r20, [%r5];
+    setp.eq.u32 %p2, %r20, 0;
+    @%p2 bra AGAIN;
+    bra MEET;
+SET:
+    mov.b32 %r20, 7;
+    st.shared.b32 [%r5], %r20;
+MEET:
+    join;
+    add.u32 %r21, %r20, %r4;
+)";
+
 constexpr const char* kPrint = R"(
     setp.eq.u32 %p1, %r4, 3;
     setp.ge.u32 %p2, %r4, 30;
@@ -320,6 +341,10 @@ std::vector<ControlCase> make_cases() {
       {"membar.cta", 32, exchange("membar.cta"), &exchanged},
       {"membar.gl", 32, exchange("membar.gl"), &exchanged},
       {"membar.sys", 32, exchange("membar.sys"), &exchanged},
+      {"yield", 32, kWait,
+       [](uint32_t thread) {
+         return ControlWords{7, 7 + thread};
+       }},
       {"print", 32, kPrint, &printed, "", "<3 -3 3.142>\n189abcdef;36|\n189abcdef;37|\n", "", kMessages},
       {"print.part", 32, kPrintPart, &printed, "",
        "<3 -3 3.142>end\n189abcdef;36|<30 -30 1.000>end\n189abcdef;37|<31 -31 1.000>end\n", "", kMessages},

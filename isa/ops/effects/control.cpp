@@ -22,6 +22,8 @@ constexpr OpRow kRows[] = {
     control("exit", Effect::Exit, {}, "Ends the lanes."),
     control("ret", Effect::Return, {},
             "Returns from the function or shader. An any-hit shader accepts its candidate."),
+    control("yield", Effect::Yield, {},
+            "Says that lanes may go round here until others of their warp have done something."),
     control("trap", Effect::Trap, {}, "Stops the run with a fault."),
 };
 
