@@ -22,6 +22,7 @@
 #include "core/ray_door.h"
 #include "core/reorder_unit.h"
 #include "core/residency.h"
+#include "core/subwarp_unit.h"
 #include "core/warp_slots.h"
 #include "engine/engine.h"
 #include "exec/executor.h"
@@ -184,6 +185,7 @@ class CoreCell final : public Cell {
   Lsu lsu_;
   const Doors doors_{lsu_, rt_};
   const std::unique_ptr<MbarrierUnit> mbarriers_;  // null when the program has none
+  const std::unique_ptr<SubwarpUnit> subwarps_;    // null when a path runs until it ends
   MemoryAccesses memory_;
   ConstantPort constants_;
   const std::unique_ptr<ParkingLot> parking_;  // null when warps keep their places

@@ -12,6 +12,7 @@
 #include "core/memory_accesses.h"
 #include "core/ray_door.h"
 #include "core/reorder_unit.h"
+#include "core/subwarp_unit.h"
 
 namespace glint::core {
 
@@ -29,6 +30,7 @@ uint64_t IssueStage::leave_out_bank_conflicts(Scheduler& scheduler, uint64_t rea
 }
 
 uint64_t IssueStage::leave_out_held(Scheduler& scheduler, uint64_t ready, Cycle now) const {
+  if (units_.subwarps) units_.subwarps->look(scheduler, now);
   if (core_.params.register_file.banks) ready = leave_out_bank_conflicts(scheduler, ready, now);
   return ready ? scheduler.leave_out_held(ready, now) : 0;
 }
@@ -145,6 +147,11 @@ inline void IssueStage::finish_fixed(uint32_t slot, const IssueRow& row, const e
   }
 }
 
+void IssueStage::take_turns(uint32_t slot, const IssueRow& row, LaneMask before, Cycle now) {
+  units_.subwarps->follow(slot, before);
+  if (row.finish == Finish::Memory && row.num_defs > 0) units_.subwarps->yield(slot, now);
+}
+
 // Finds when the next instruction of the warp can issue, and brings what its issue needs near to the host's
 // core: other warps come first, as a rule.
 inline void IssueStage::prepare_next(WarpSlot& at, Cycle now) {
@@ -162,6 +169,7 @@ void IssueStage::issue(uint32_t slot, Cycle now) {
   const IssueRow& row = core_.table.row(at.warp.simt.pc);
   if (row.is_whole) [[unlikely]]
     look_for_slow_path(at.warp, row);
+  const LaneMask before = at.warp.simt.active;
   const exec::Issued issued = core_.executor.execute(at.warp, now);
   if (core_.executor.fault()) [[unlikely]] {
     fault_ = core_.executor.fault();
@@ -173,6 +181,8 @@ void IssueStage::issue(uint32_t slot, Cycle now) {
   if (core_.params.register_file.banks) [[unlikely]]
     scheduler.banks.read(core_.table.bank_reads(issued.pc), now);
   hand_over(slot, row, issued, late, now);
+  if (units_.subwarps) [[unlikely]]
+    take_turns(slot, row, before, now);
   if (issued.finished) [[unlikely]]
     units_.barriers.end_warp(*at.warp.block, now);
   if (at.warp.instructions > core_.params.instruction_budget) [[unlikely]]

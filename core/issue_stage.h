@@ -14,6 +14,7 @@ class MbarrierUnit;
 class MemoryAccesses;
 class RayDoor;
 class ReorderUnit;
+class SubwarpUnit;
 
 class IssueStage {
  public:
@@ -24,6 +25,7 @@ class IssueStage {
     BarrierUnit& barriers;
     ReorderUnit* reorder;     // null: threads stay in their lanes
     MbarrierUnit* mbarriers;  // null: the program has no barriers in shared memory
+    SubwarpUnit* subwarps;    // null: a path runs until it ends
   };
   IssueStage(const CoreParts& core, const Units& units, const Doors& doors)
       : core_(core), units_(units), doors_(doors) {}
@@ -46,6 +48,7 @@ class IssueStage {
   void finish_fixed(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle late, Cycle now);
   void look_for_slow_path(const exec::WarpContext& warp, const IssueRow& row);
   void start_sequence(WarpSlot& at, const IssueRow& row, uint32_t pc, Cycle now);
+  void take_turns(uint32_t slot, const IssueRow& row, LaneMask before, Cycle now);
   void prepare_next(WarpSlot& at, Cycle now);
   void issue_rest(uint32_t slot, Cycle now);
   void tell_select(uint32_t slot, Cycle now) const;

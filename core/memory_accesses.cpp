@@ -17,7 +17,8 @@ MemoryAccesses::MemoryAccesses(const CoreParts& core, const Context& context)
       turn_(context.turn),
       holds_operands_(core.params.lsu.holds_operands()),
       pending_(core.warps.size()),
-      copies_(AsyncCopies::make(core, context.barriers, core.params.lsu.accesses)) {
+      copies_(AsyncCopies::make(core, context.barriers, core.params.lsu.accesses)),
+      subwarps_(context.subwarps) {
 }
 
 bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now) {
@@ -46,6 +47,8 @@ bool MemoryAccesses::start(uint32_t slot, const IssueRow& row, const exec::Issue
     at.front = {kNever, Stall::Call};
   else
     at.scoreboard.set(core_.table.defs(row), {kNever, row.wait});
+  if (subwarps_ && row.finish != Finish::CallRecord && !access.write && row.num_defs > 0) [[unlikely]]
+    subwarps_->begin(slot, lsu_.number_of(access), issued.pc, issued.lanes);
   CoreStats& stats = core_.counts.stats;
   count(*issued.row);
   stats.shared_passes += access.passes;
@@ -166,7 +169,11 @@ void MemoryAccesses::deliver(const MemoryAccess& access, const IssueRow& row, Cy
     const bool is_global_atomic =
         access.traffic == mem::Traffic::ShaderAtomic && !access.lines.lines().empty();
     const Cycle late = is_global_atomic ? core_.params.lsu.atomic_latency : 0;
-    at.scoreboard.set(core_.table.defs(row), {std::max(now + late, access.late_until), row.wait});
+    const Cycle ready = std::max(now + late, access.late_until);
+    if (!subwarps_) [[likely]]
+      at.scoreboard.set(core_.table.defs(row), {ready, row.wait});
+    else if (row.num_defs > 0)
+      subwarps_->end(access.slot, lsu_.number_of(access), ready);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/async_copies.h"
 #include "core/core_parts.h"
 #include "core/lsu.h"
+#include "core/subwarp_unit.h"
 
 namespace glint::core {
 
@@ -24,6 +25,7 @@ class MemoryAccesses {
     // no others.
     Cycle turn = 0;
     MbarrierUnit* barriers = nullptr;  // null: the program has no barriers in shared memory
+    SubwarpUnit* subwarps = nullptr;   // null: a path runs until it ends
   };
   MemoryAccesses(const CoreParts& core, const Context& context);
 
@@ -31,6 +33,7 @@ class MemoryAccesses {
   void start_warp(uint32_t slot) {
     pending_[slot] = {};
     if (copies_) copies_->start_warp(slot);
+    if (subwarps_) subwarps_->start_warp(slot);
   }
   // Hands the access of an executed instruction to the load-store unit. Returns false when no lane makes one.
   bool start(uint32_t slot, const IssueRow& row, const exec::Issued& issued, Cycle now);
@@ -90,6 +93,7 @@ class MemoryAccesses {
   const bool holds_operands_;
   std::vector<Pending> pending_;  // one per slot
   const std::unique_ptr<AsyncCopies> copies_;
+  SubwarpUnit* const subwarps_;
 };
 
 }  // namespace glint::core

@@ -10,6 +10,7 @@
 #include "base/registry.h"
 #include "base/types.h"
 #include "core/code_params.h"
+#include "core/interleaving.h"
 #include "core/issue_scheduler.h"
 #include "core/op_times.h"
 #include "core/parking.h"
@@ -235,6 +236,8 @@ struct Params {
   ReorderParams reordering;
   PolicyChoice<Parking> parking{"none"};
   ParkingLotParams parking_lot;
+  PolicyChoice<Interleaving> interleaving{"none"};
+  SubwarpParams subwarps;
   Units units;
   // An H200 has a crossing of 1 cycle: a result takes 4 cycles within a pipe and 5 to another, or 17 and 18
   // from the special-function unit. It has a guard delay of 9 cycles: a comparison's result selects after 4
@@ -294,6 +297,9 @@ struct Params {
                "Selects when a warp gives up its place in its core while its rays are in the RT unit."),
         section(&Params::parking_lot, "parking_lot",
                 "Parameters of the warps that have given up their places."),
+        policy(&Params::interleaving, "interleaving",
+               "Selects when another path of a diverged warp runs because one waits for memory."),
+        section(&Params::subwarps, "subwarps", "Parameters of the paths of a warp that take turns."),
         section(&Params::units, "units", "Latencies and initiation intervals of the execution units."),
         param(&Params::pipe_crossing, "pipe_crossing", "cycle",
               "Extra cycles before an instruction on another pipe can read a result.", 0, 100),

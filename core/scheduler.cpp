@@ -13,7 +13,7 @@ Scheduler::Scheduler(uint32_t index, uint32_t slots, const Params& params, Alarm
       policy_(params.issue.make({(slots + params.schedulers - 1) / params.schedulers})),
       needs_rt_(policy_->needs_rt()),
       policy_holds_(policy_->holds_back()) {
-  may_hold_back_ = policy_holds_ || params.register_file.banks > 0;
+  may_hold_back_ = policy_holds_ || params.register_file.banks > 0 || params.interleaving.make({})->is_used();
 }
 
 uint64_t Scheduler::leave_out_held(uint64_t ready, Cycle now) {

@@ -118,7 +118,8 @@ class Scheduler {
     reason_ = std::min(reason_, Stall::RegisterBanks);
     alarms_.sleep_less(index_, next);
   }
-  // Returns whether hold_for_banks() or leave_out_held() may keep ready warps from issuing.
+  // Returns whether hold_for_banks() or leave_out_held() may keep ready warps from issuing, or a SubwarpUnit
+  // looks at the warps that are not.
   bool may_hold_back() const { return may_hold_back_; }
   // Returns those warps of `ready`, which is not 0, that the policy lets issue.
   uint64_t leave_out_held(uint64_t ready, Cycle now);
@@ -159,6 +160,14 @@ class Scheduler {
   }
 
   uint32_t index() const { return index_; }
+  uint64_t resident() const { return resident_; }
+  // Returns the warps whose next instruction waits for a load or an atomic.
+  uint64_t waiting_for_memory() const {
+    uint64_t waiting = 0;
+    for (size_t s = 0; s < waits_.size(); ++s)
+      if (waits_for_memory(Stall(s))) waiting |= waits_[s];
+    return waiting & resident_ & operands_.missing();
+  }
   L1Listener* l1_listener() { return policy_->l1_listener(); }
   Stall reason() const { return reason_; }  // what the scheduler's cycles are spent on
   bool is_resident(uint32_t warp) const { return resident_ >> warp & 1; }
@@ -225,7 +234,7 @@ class Scheduler {
   bool watches_rt_ = false, watches_lsu_ = false;
   Stall reason_ = Stall::NoWarp;
   const bool has_latches_;      // Params::dispatch_latch
-  bool may_hold_back_ = false;  // Warps that find_ready() returns may be held back after all.
+  bool may_hold_back_ = false;  // may_hold_back()
   Alarms& alarms_;
   std::unique_ptr<IssueScheduler> policy_;
   const bool needs_rt_;      // IssueScheduler::needs_rt()

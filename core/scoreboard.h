@@ -90,6 +90,11 @@ class Scoreboard {
       reads_[r].until = std::max(reads_[r].until, end);
     }
   }
+  // Forgets what waits for accesses to memory that have not been answered.
+  void forget_accesses() {
+    for (Entry& entry : entries_)
+      if (ready_at(entry) == kNever && waits_for_memory(wait_of(entry))) entry = 0;
+  }
   // Sets the ready time. `from` is the pipe whose result it is. Count stands for a result that reaches all
   // pipes at the same time.
   void set(std::span<const uint16_t> registers, Ready value, Pipe from = Pipe::Count) {

@@ -38,6 +38,11 @@ enum class Stall : uint8_t {
   Count
 };
 
+// Returns whether the result of a load or of an atomic is missing.
+constexpr bool waits_for_memory(Stall s) {
+  return s >= Stall::LocalMemory && s <= Stall::LongScoreboard;
+}
+
 constexpr std::string_view name_of(Stall s) {
   constexpr std::string_view kNames[] = {"issued",         "math_pipe_throttle",
                                          "register_banks", "lsu_throttle",

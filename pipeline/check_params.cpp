@@ -55,12 +55,29 @@ void check_parking(const core::Params& core, Diagnostics& diagnostics) {
                         core.parking.name, core.reorder.name));
 }
 
+void check_interleaving(const core::Params& core, Diagnostics& diagnostics) {
+  if (!core.interleaving.make({})->is_used()) return;
+  if (core.reorder.make({})->where() != core::Reorder::Where::Nowhere)
+    diagnostics.error(
+        {},
+        fmt::format("core.interleaving = \"{}\" does not go with core.reorder = \"{}\": threads that change "
+                    "their warps would leave results behind that are on the way",
+                    core.interleaving.name, core.reorder.name));
+  if (core.parking.make({})->is_used())
+    diagnostics.error(
+        {},
+        fmt::format("core.interleaving = \"{}\" does not go with core.parking = \"{}\": paths that wait keep "
+                    "values in registers, which a warp without a place does not have",
+                    core.interleaving.name, core.parking.name));
+}
+
 }  // namespace
 
 void check(const GpuParams& params, Diagnostics& diagnostics) {
   mem::check(params.memory, diagnostics, "memory.");
   check_code(params.core, params.memory.line, diagnostics);
   check_parking(params.core, diagnostics);
+  check_interleaving(params.core, diagnostics);
   if (params.rt.request_bytes % mem::kSectorBytes)
     diagnostics.error({},
                       fmt::format("'rt.request_bytes' is {}, expected a multiple of the sector of {} bytes",

@@ -5,6 +5,7 @@ glint_test(timing_core WITH machine LINKS glint::pipeline SOURCES timing/core_te
 glint_test(contract_issue_scheduler WITH machine LINKS glint::core SOURCES contract/issue_scheduler_test.cpp)
 glint_test(contract_reorder WITH machine LINKS glint::core SOURCES contract/reorder_test.cpp)
 glint_test(contract_parking WITH machine LINKS glint::core SOURCES contract/parking_test.cpp)
+glint_test(contract_interleaving WITH machine LINKS glint::core SOURCES contract/interleaving_test.cpp)
 glint_test(contract_warp_layout WITH machine LINKS glint::pipeline SOURCES contract/warp_layout_test.cpp)
 glint_test(timing_hazards WITH machine LINKS glint::pipeline SOURCES timing/hazard_test.cpp)
 glint_test(timing_code WITH machine LINKS glint::pipeline SOURCES timing/code_cache_test.cpp timing/core_code_test.cpp)

@@ -71,6 +71,8 @@ const std::vector<Mechanism> kMechanisms = {
        p.core.parking = PolicyChoice<core::Parking>("at_rays");
        p.core.warps = 4;
      }},
+    {"paths of a warp that take turns",
+     [](GpuParams& p) { p.core.interleaving = PolicyChoice<core::Interleaving>("on_stall"); }},
     {"loads held back for lines in the L1",
      [](GpuParams& p) {
        p.core.issue = PolicyChoice<core::IssueScheduler>("ccws");
