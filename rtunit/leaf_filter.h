@@ -52,7 +52,7 @@ class LeafFilter {
  public:
   static constexpr PolicyKind kKind{"rt.leaf_filter", "rtunit/leaf_filters"};
   static constexpr std::string_view kNone = "none";       // Under this name the traversal asks nobody.
-  static constexpr const char* kMicromaps = "micromaps";  // is what reads opacity micromaps
+  static constexpr const char* kMicromaps = "micromaps";  // The filter of this name reads opacity micromaps.
   struct Context {
     stats::Group* stats = nullptr;  // parent for a policy's own statistics; may be null
     const mem::AddressSpace& memory;

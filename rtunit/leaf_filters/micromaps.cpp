@@ -27,7 +27,8 @@ Opacity opacity_of(MicroState state, bool two_states) {
 // triangle lies in the leaf; otherwise the unit reads the sector with the micro-triangle's state.
 class MicromapFilter final : public LeafFilter {
  public:
-  static constexpr std::string_view kName = kMicromaps;
+  static constexpr std::string_view kName = "micromaps";
+  static_assert(kName == kMicromaps);
   static constexpr std::string_view kDoc =
       "Opacity micromaps say where alpha-tested triangles are opaque or transparent; shaders decide the "
       "rest.";
