@@ -71,6 +71,20 @@ class GlintTest(unittest.TestCase):
             self.assertIn(part, done.stderr)
         return done
 
+    def run_statistics(self, folder, *arguments):
+        """Runs `arguments` into `folder` and returns the statistics."""
+        done = self.glint("run", "--out", folder, *arguments)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return self.statistics(folder)
+
+    def check_same_statistics(self, *arguments):
+        """Checks that a run has the same bytes when no cycle is skipped, and with several threads."""
+        self.run_statistics("one", *arguments, "--threads", "1")
+        wanted = (self.folder / "one/stats.csv").read_bytes()
+        for other in (["--no-skip"], ["--threads", "2"], ["--threads", "4"]):
+            self.run_statistics("other", *arguments, *other)
+            self.assertEqual((self.folder / "other/stats.csv").read_bytes(), wanted, (arguments, other))
+
     def statistics(self, folder):
         """Returns the value of each statistic of the run in `folder`, by path."""
         with (self.folder / folder / "stats.csv").open(newline="") as file:

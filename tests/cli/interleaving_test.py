@@ -9,20 +9,15 @@ TURNS = [*SMALL, "--set", "core.interleaving=on_stall", "--set", "core.on_stall.
 
 
 class Interleaving(GlintTest):
-    def run_glint(self, out, what, *arguments):
-        done = self.glint("run", what, "--out", out, *arguments)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return self.statistics(out)
-
     def count(self, statistics, name):
         return sum(value for key, value in statistics.items() if key.endswith(f".interleaving.{name}"))
 
     def test_the_picture_is_the_same_and_paths_take_turns(self):
         for what in ("WKND_PT", "CHSNT_PT", "PARTY_PT"):
-            plain = self.run_glint("plain", what, *SMALL)
+            plain = self.run_statistics("plain", what, *SMALL)
             self.assertFalse([name for name in plain if ".interleaving." in name])
             for settings in ([], ["--set", "core.on_stall.yields=true"], ["--set", "core.subwarps.paths=32"]):
-                turns = self.run_glint("turns", what, *TURNS, *settings)
+                turns = self.run_statistics("turns", what, *TURNS, *settings)
                 self.assertEqual((self.folder / "turns/image.pfm").read_bytes(), (self.folder / "plain/image.pfm").read_bytes(), what)
                 self.assertGreater(self.count(turns, "stalls") + self.count(turns, "yields"), 100, (what, settings))
                 self.assertEqual(self.count(turns, "yields") > 0, "core.on_stall.yields=true" in settings)
@@ -32,17 +27,13 @@ class Interleaving(GlintTest):
                     self.assertEqual(of(turns), of(plain), (what, name))
 
     def test_a_change_costs_what_the_configuration_says(self):
-        cheap = self.run_glint("cheap", "WKND_PT", *TURNS)
-        dear = self.run_glint("dear", "WKND_PT", *TURNS, "--set", "core.subwarps.latency=1000")
+        cheap = self.run_statistics("cheap", "WKND_PT", *TURNS)
+        dear = self.run_statistics("dear", "WKND_PT", *TURNS, "--set", "core.subwarps.latency=1000")
         self.assertGreater(dear["gpu.cycles"], cheap["gpu.cycles"] + 1000)
 
     def test_stepping_skipping_and_threads_give_the_same_bytes(self):
         arguments = ["CHSNT_PT", *TURNS, "--set", "cores=4", "--set", "core.on_stall.yields=true"]
-        self.run_glint("one", *arguments, "--threads", "1")
-        wanted = (self.folder / "one/stats.csv").read_bytes()
-        for other in (["--no-skip"], ["--threads", "2"]):
-            self.run_glint("other", *arguments, *other)
-            self.assertEqual((self.folder / "other/stats.csv").read_bytes(), wanted, other)
+        self.check_same_statistics(*arguments)
 
     def test_what_does_not_go_together_is_refused(self):
         for setting, message in (

@@ -11,18 +11,13 @@ POOL = ["--set", "rt.pool=repack", "--set", "rt.pool_stacks=false", "--set", "rt
 
 
 class Parking(GlintTest):
-    def run_glint(self, out, what, *arguments):
-        done = self.glint("run", what, "--out", out, *arguments)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return self.statistics(out)
-
     def parked(self, statistics, name):
         return statistics[f"gpu.core[0].parking.{name}"]
 
     def test_more_rays_wait_than_warps_fit_and_the_picture_is_the_same(self):
         for what in ("WKND_PT", "CHSNT_AO"):  # CHSNT has any-hit shaders
-            kept = self.run_glint("kept", what, *SMALL, *POOL)
-            gone = self.run_glint("gone", what, *PARKED, *POOL)
+            kept = self.run_statistics("kept", what, *SMALL, *POOL)
+            gone = self.run_statistics("gone", what, *PARKED, *POOL)
             self.assertEqual((self.folder / "gone/image.pfm").read_bytes(), (self.folder / "kept/image.pfm").read_bytes(), what)
             self.assertFalse([name for name in kept if ".parking." in name])
             self.assertGreater(self.parked(gone, "left"), 20)
@@ -35,17 +30,13 @@ class Parking(GlintTest):
             self.assertEqual(gone["gpu.core[0].warps"], kept["gpu.core[0].warps"])
 
     def test_a_return_costs_what_the_configuration_says(self):
-        cheap = self.run_glint("cheap", "WKND_PT", *PARKED, "--set", "core.parking_lot.latency=0")
-        dear = self.run_glint("dear", "WKND_PT", *PARKED, "--set", "core.parking_lot.latency=20000")
+        cheap = self.run_statistics("cheap", "WKND_PT", *PARKED, "--set", "core.parking_lot.latency=0")
+        dear = self.run_statistics("dear", "WKND_PT", *PARKED, "--set", "core.parking_lot.latency=20000")
         self.assertGreater(dear["gpu.cycles"], cheap["gpu.cycles"] + 20000)
 
     def test_stepping_skipping_and_threads_give_the_same_bytes(self):
         arguments = ["CHSNT_PT", *PARKED, *POOL, "--set", "cores=4"]
-        self.run_glint("one", *arguments, "--threads", "1")
-        wanted = (self.folder / "one/stats.csv").read_bytes()
-        for other in (["--no-skip"], ["--threads", "2"]):
-            self.run_glint("other", *arguments, *other)
-            self.assertEqual((self.folder / "other/stats.csv").read_bytes(), wanted, other)
+        self.check_same_statistics(*arguments)
 
     def test_what_does_not_go_together_is_refused(self):
         for settings, message in (

@@ -72,12 +72,7 @@ class Same(ReorderTest):
     def test_stepping_skipping_and_threads_give_the_same_bytes(self):
         what = self.example(40)
         for policy in POLICIES[1:]:
-            arguments = [what, "--set", f"core.reorder={policy}", "--set", "cores=4"]
-            self.run_glint("one", *arguments, "--threads", "1")
-            wanted = (self.folder / "one/stats.csv").read_bytes()
-            for other in (["--no-skip"], ["--threads", "2"], ["--threads", "4"]):
-                self.run_glint("other", *arguments, *other)
-                self.assertEqual((self.folder / "other/stats.csv").read_bytes(), wanted, (policy, other))
+            self.check_same_statistics(what, "--config", "mobile", "--set", f"core.reorder={policy}", "--set", "cores=4")
 
     def test_each_pixel_pays_for_its_own_thread_wherever_that_runs(self):
         setting = ["--size", "24x24", "--spp", "1", "--set", "core.reorder=by_shader_record"]
