@@ -27,10 +27,9 @@ struct SubwarpParams {
 
 // Contract (tests/contract/interleaving_test.cpp):
 //  - is_used() never changes. Without it a path runs until it ends or its lanes meet those of other paths.
-//  - leaves() is asked when the running path of a warp waits for memory, and another path of the same shader
-//  call
-//    could issue. yields() is asked when the running path has sent an access whose result it has not asked
-//    for yet, and another path could issue. Both are functions of the view and of the policy's parameters.
+//  - leaves() is asked when the running path of a warp waits for memory, and another path of the same call
+//    could issue. yields() is asked when the running path has sent a load, and another path could issue. Both
+//    are functions of the view and of the policy's parameters.
 //  - A policy changes cycles, and no result, except those of operations across the lanes of a warp.
 class Interleaving {
  public:

@@ -19,7 +19,7 @@ namespace glint::core {
 uint64_t IssueStage::leave_out_bank_conflicts(Scheduler& scheduler, uint64_t ready, Cycle now) const {
   for (uint64_t rest = ready; rest; rest &= rest - 1) {
     const auto local = uint32_t(std::countr_zero(rest));
-    const uint32_t pc = core_.warps[slot_of(scheduler, local)].warp.simt.pc;
+    const uint32_t pc = core_.warps[core_.warps.slot_of(scheduler, local)].warp.simt.pc;
     const Cycle at =
         scheduler.banks.free_at(core_.table.bank_reads(pc), now, core_.params.register_file.window);
     if (at == now) continue;
@@ -238,7 +238,7 @@ inline void IssueStage::run(Scheduler& scheduler, Cycle now) {
       core_.counts.profile->point(scheduler.index(), blamed_pc(scheduler, now));
     return;
   }
-  const uint32_t local = scheduler.pick(ready, now, doors_), slot = slot_of(scheduler, local);
+  const uint32_t local = scheduler.pick(ready, now, doors_), slot = core_.warps.slot_of(scheduler, local);
   WarpSlot& at = core_.warps[slot];
   const IssueRow* const row = scheduler.row_of(local);
   GLINT_DCHECK(!row || row == &core_.table.row(at.warp.simt.pc), "warp {} is not where it was", slot);
@@ -268,7 +268,7 @@ void IssueStage::tell_select(uint32_t slot, Cycle now) const {
 uint32_t IssueStage::blamed_pc(const Scheduler& scheduler, Cycle now) const {
   const std::optional<uint32_t> local = scheduler.to_blame(now, doors_);
   if (!local) return Profile::kNowhere;
-  const uint32_t slot = slot_of(scheduler, *local);
+  const uint32_t slot = core_.warps.slot_of(scheduler, *local);
   return scheduler.reason() == Stall::RtWait && scheduler.next_of(*local).ready_at == kNever
              ? units_.rays.traced_at(slot)
              : core_.warps[slot].warp.simt.pc;

@@ -53,9 +53,6 @@ class IssueStage {
   void issue_rest(uint32_t slot, Cycle now);
   void tell_select(uint32_t slot, Cycle now) const;
   uint32_t blamed_pc(const Scheduler& scheduler, Cycle now) const;
-  uint32_t slot_of(const Scheduler& scheduler, uint32_t local) const {
-    return local * core_.params.schedulers + scheduler.index();
-  }
 
   const CoreParts core_;
   const Units units_;

@@ -55,11 +55,8 @@ bool SubwarpUnit::fills(const Slot& slot, LaneMask lanes, uint16_t def) const {
 
 void SubwarpUnit::yield(uint32_t slot, Cycle now) {
   WarpSlot& at = core_.warps[slot];
-  if (!may_change(at)) return;
-  const std::optional<size_t> path = next_path(at, slots_[slot]);
-  if (!path) return;
-  ++stats_.asked;
-  if (!policy_->yields(view_of(at, *path))) return;
+  const std::optional<size_t> path = offer(at, slots_[slot]);
+  if (!path || !policy_->yields(view_of(at, *path))) return;
   ++stats_.yields;
   change(at, slots_[slot], *path, now);
 }
@@ -67,13 +64,10 @@ void SubwarpUnit::yield(uint32_t slot, Cycle now) {
 void SubwarpUnit::look(Scheduler& scheduler, Cycle now) {
   for (uint64_t rest = waiting_of(scheduler); rest; rest &= rest - 1) {
     const auto local = uint32_t(std::countr_zero(rest));
-    const uint32_t slot = local * core_.params.schedulers + scheduler.index();
+    const uint32_t slot = core_.warps.slot_of(scheduler, local);
     WarpSlot& at = core_.warps[slot];
-    if (!may_change(at)) continue;
-    const std::optional<size_t> path = next_path(at, slots_[slot]);
-    if (!path) continue;
-    ++stats_.asked;
-    if (!policy_->leaves(view_of(at, *path))) continue;
+    const std::optional<size_t> path = offer(at, slots_[slot]);
+    if (!path || !policy_->leaves(view_of(at, *path))) continue;
     ++stats_.stalls;
     change(at, slots_[slot], *path, now);
     core_.warps.refresh(at, now);
@@ -95,6 +89,14 @@ Interleaving::View SubwarpUnit::view_of(const WarpSlot& at, size_t path) const {
   return {uint32_t(num_lanes(simt.active)), uint32_t(num_lanes(simt.entries()[path].lanes)),
           uint32_t(std::popcount(at.scheduler->resident())),
           uint32_t(std::popcount(waiting_of(*at.scheduler)))};
+}
+
+// Returns the path that the warp could change to, which counts as a question, or none.
+std::optional<size_t> SubwarpUnit::offer(const WarpSlot& at, const Slot& slot) {
+  if (at.front.at == kNever || at.sequence.is_under_way()) return std::nullopt;
+  const std::optional<size_t> path = next_path(at, slot);
+  if (path) ++stats_.asked;
+  return path;
 }
 
 // Returns the path that could issue in place of the running one: of those that have begun the first, or else

@@ -70,9 +70,7 @@ class SubwarpUnit {
     Cycle ready = 0;               // when the results of all lanes are ready that have come
   };
 
-  bool may_change(const WarpSlot& at) const {
-    return at.front.at != kNever && !at.sequence.is_under_way() && at.warp.simt.depth() > 0;
-  }
+  std::optional<size_t> offer(const WarpSlot& at, const Slot& slot);
   uint64_t waiting_of(const Scheduler& scheduler) const;
   Interleaving::View view_of(const WarpSlot& at, size_t path) const;
   std::optional<size_t> next_path(const WarpSlot& at, const Slot& slot) const;

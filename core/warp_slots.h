@@ -29,6 +29,10 @@ class WarpSlots {
 
   uint32_t num_resident() const { return num_resident_; }
   uint64_t num_launched() const { return num_launched_; }
+  // Returns the slot of a scheduler's warp, which the scheduler numbers locally.
+  uint32_t slot_of(const Scheduler& scheduler, uint32_t local) const {
+    return local * params_.schedulers + scheduler.index();
+  }
   bool is_resident(uint32_t slot) const { return slots_[slot].scheduler->is_resident(slots_[slot].local); }
   uint32_t first_free() const;
   const Alarms& alarms() const { return *alarms_; }

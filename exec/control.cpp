@@ -99,10 +99,10 @@ bool Control::branch_back(WarpContext& warp, uint32_t target) {
 // Lets lanes that go back at the end `pc` of a loop in vain give way to others of their warp, which may hold
 // what they wait for. Lanes that have met at a join may go on without those of the loop then. So does
 // hardware that schedules threads independently: its compiler puts a yield into such loops, and lanes that
-// have yielded are not waited for (Diamos et al., US patent 10,067,768). Choice: a turn is in vain if none of
-// the lanes has stored. On an H200 a lock goes on as if lanes yielded in each turn (bench/probes/locks.cu).
-// Here they do so after 16 turns in vain of the same lanes, and in each turn of a loop in which they have
-// done so last, because loops that wait for nobody keep their lanes together then.
+// have yielded are not waited for (Diamos et al., US patent 10,067,768). Choice: a turn is in vain if
+// WarpContext::effects did not grow in it. On an H200 a lock goes on as if lanes yielded in each turn
+// (bench/probes/locks.cu). Here lanes do so after 16 turns in vain of the same lanes, and then in each turn
+// in vain of that loop. So loops that wait for nobody keep their lanes together.
 void Control::go_round(WarpContext& warp, uint32_t pc) {
   constexpr uint32_t kTurns = 16;
   SimtStack& simt = warp.simt;

@@ -129,11 +129,7 @@ class SimtStack {
   }
   // Lets the lanes of entry `index` run, a Path or a Join in the frame of the path that runs. The latter
   // waits as a Path. Lanes that have arrived at a Join go on without the others, which arrive there later.
-  void switch_to(size_t index) {
-    const Path from{pc, active, enclosing_};
-    run_entry(index);
-    push_waiting(from, false);
-  }
+  void switch_to(size_t index) { change_to(index, false); }
   // Does the same for lanes that wait in vain for others of their warp.
   void yield_to(size_t index) {
     switch_to(index);
@@ -141,11 +137,7 @@ class SimtStack {
   }
   // Lets the path of entry `index` run, and the running one wait at its instruction until take_waiting() is
   // called there, or until no other one can run.
-  void wait_for(size_t index) {
-    const Path from{pc, active, enclosing_};
-    run_entry(index);
-    push_waiting(from, true);
-  }
+  void wait_for(size_t index) { change_to(index, true); }
   // Returns whether entry `index` is a path that does not wait at its instruction.
   bool can_run(size_t index) const { return entries_[index].kind == Kind::Path && !entries_[index].waits; }
   // Takes the lanes that wait at the instruction of the running path into that path: those inside of the same
@@ -169,13 +161,10 @@ class SimtStack {
   LaneMask& lanes_at(size_t index) { return entries_[index].lanes; }
 
  private:
-  struct Path {
-    uint32_t pc;
-    LaneMask lanes;
-    uint32_t enclosing;
-  };
-
-  void run_entry(size_t index) {
+  void change_to(size_t index, bool waits) {
+    Entry from{Kind::Path, pc, active, enclosing_};
+    from.has_begun = true;
+    from.waits = waits;
     Entry& to = entries_[index];
     const bool is_join = to.kind == Kind::Join;
     pc = is_join ? to.pc + 1 : to.pc;
@@ -183,13 +172,8 @@ class SimtStack {
     enclosing_ = to.enclosing;
     if (is_join && enclosing_ != kNone) ++entries_[enclosing_].open;
     if (!is_join) take(uint32_t(index));
+    push(from);
     has_switched_ = true;
-  }
-  void push_waiting(const Path& from, bool waits) {
-    Entry waiting{Kind::Path, from.pc, from.lanes, from.enclosing};
-    waiting.has_begun = true;
-    waiting.waits = waits;
-    push(waiting);
   }
   // Notes that a path inside of entry `index` has gone elsewhere. If it was the last one there, the lanes
   // that have arrived are a path, or there is nothing left to wait for.

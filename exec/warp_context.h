@@ -100,8 +100,8 @@ struct WarpContext {
   isa::Slot ray_answer = 0;      // predicate that receives the answer
   LaneMask walking = 0;          // the lanes of ray_lanes whose rays World::traversal walks
 
-  // This grows with every store to global or shared memory and to images, and with every atomic that does not
-  // take a lock.
+  // This grows with every store to global or shared memory and to images, and with every atomic but those
+  // with which lanes ask for a lock or look at a word (MemoryOps::has_effect).
   uint64_t effects = 0;
   WaitingLoop waiting_loop;
 

@@ -27,7 +27,7 @@ struct SerialMicromap {
 };
 static_assert(sizeof(SerialMicromap) == 2 * VK_UUID_SIZE);
 
-// Is a copy of what one build was asked for, because a recorded build runs later.
+// Holds a copy of what one build was asked for, because a recorded build runs later.
 struct MicromapBuild {
   Micromap* to = nullptr;
   std::vector<pipeline::MicromapUsage> usage;
