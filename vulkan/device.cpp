@@ -66,7 +66,9 @@ VkResult CreateDevice(PhysicalDevice& physical, const VkDeviceCreateInfo* info, 
   made->extensions = enabled_extensions(device_extensions(), info->ppEnabledExtensionNames,
                                         info->enabledExtensionCount, "device");
   if (physical.instance.settings.is_universal)
-    made->messages().warning("GLINT_VK_QUEUE is universal: the device announces graphics and has none of it");
+    made->messages().warning(
+        "GLINT_VK_QUEUE is universal: the device announces graphics and has none of it, and a "
+        "conformance that nobody certified");
   *out = made.release();
   return VK_SUCCESS;
 }

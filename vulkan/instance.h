@@ -52,7 +52,7 @@ inline constexpr uint32_t kMaxRayRecursion = 31, kMaxRays = 1u << 30;
 VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_universal);
 // Returns whether the device says that it has a feature.
 bool announces(const PhysicalDevice& device, const Feature& feature);
-DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset);
+DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset, bool is_universal);
 // Returns the extensions that an application enables. Throws Refusal for one that is not announced; `whose`
 // is "instance" or "device".
 std::set<std::string, std::less<>> enabled_extensions(std::span<const VkExtensionProperties> announced,

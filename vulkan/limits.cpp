@@ -235,8 +235,10 @@ VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_univers
   return l;
 }
 
-DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset) {
+DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset, bool is_universal) {
   DeviceProperties p{};
+  // Nobody has certified the device. wgpu hides those that say so.
+  if (is_universal) p.conformanceVersion = {1, 3, 0, 0};
   set_text(p.driverName, "Glint");
   set_text(p.driverInfo, fmt::format("preset {}, functional", preset));
   set_text(reinterpret_cast<char(&)[VK_UUID_SIZE]>(p.deviceUUID), preset);
@@ -268,7 +270,9 @@ DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string
 }  // namespace glint::vulkan
 
 VkPhysicalDevice_T::VkPhysicalDevice_T(VkInstance_T& of)
-    : instance(of), gpu(of.settings.gpu), properties(glint::vulkan::properties_of(gpu, of.settings.preset)) {
+    : instance(of),
+      gpu(of.settings.gpu),
+      properties(glint::vulkan::properties_of(gpu, of.settings.preset, of.settings.is_universal)) {
   core.apiVersion = VK_MAKE_API_VERSION(0, 1, 3, VK_HEADER_VERSION);
   core.driverVersion = VK_MAKE_API_VERSION(0, 0, 1, 0);
   // Choice: 0 is nobody's number, so no client tunes itself for another vendor's GPU.

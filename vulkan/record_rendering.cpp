@@ -30,15 +30,17 @@ void clear(Queue& queue, const exec::ImageView& view, const VkRect2D& area, cons
   const uint32_t x_end = std::min(view.width, x + area.extent.width);
   const uint32_t y_end = std::min(view.height, y0 + area.extent.height);
   if (x >= x_end) return;
-  const uint64_t row_bytes = uint64_t{x_end - x} * texel_bytes;
+  std::vector<std::byte> cleared(uint64_t{x_end - x} * texel_bytes);
+  for (uint64_t at = 0; at < cleared.size(); at += texel_bytes)
+    std::memcpy(cleared.data() + at, texel.data(), texel_bytes);
+  uint64_t rows = 0;
   for (uint32_t layer = layers.first; layer < std::min(view.layers, layers.first + layers.count); ++layer)
-    for (uint32_t y = y0; y < y_end; ++y) {
-      std::byte* const row = queue.device.memory.find(view.address_of({x, y, 0, layer, 0}), row_bytes);
+    for (uint32_t y = y0; y < y_end; ++y, ++rows) {
+      std::byte* const row = queue.device.memory.find(view.address_of({x, y, 0, layer, 0}), cleared.size());
       if (!row) return;
-      for (uint64_t at = 0; at < row_bytes; at += texel_bytes)
-        std::memcpy(row + at, texel.data(), texel_bytes);
-      queue.device.clock.add_transfer(row_bytes);
+      std::ranges::copy(cleared, row);
     }
+  if (rows) queue.device.clock.add_transfer(rows * cleared.size());
 }
 
 exec::Words words_of(const VkClearColorValue& colour) {

@@ -219,5 +219,5 @@ if sys.argv[3:4] == ["words"]:
 if sys.argv[3:4] == ["graph"]:
     print_differences(pathlib.Path(sys.argv[4]))
     sys.exit()
-FOLDER = vulkan_case.need_module("@node-llama-cpp/linux-x64-vulkan") / "bins/linux-x64-vulkan"
+FOLDER = vulkan_case.need_module("@node-llama-cpp/linux-x64-vulkan")[0] / "bins/linux-x64-vulkan"
 vulkan_case.main()

@@ -20,13 +20,19 @@ def need(program, package):
         sys.exit(SKIPPED)
 
 
-def need_module(name):
-    """Returns the folder of a module of npm, or ends the test as skipped and says so."""
+def find_module(name):
+    """Returns the folder of a module of npm, or None."""
     folder = os.environ.get("GLINT_NODE_MODULES", "")
-    if not folder or not pathlib.Path(folder, name).is_dir():
-        print(f"SKIPPED: GLINT_NODE_MODULES names no folder with {name} (npm install --force {name})")
+    return pathlib.Path(folder, name).resolve() if folder and pathlib.Path(folder, name).is_dir() else None
+
+
+def need_module(*names):
+    """Returns the folders of modules of npm, or ends the test as skipped and says so when none of them is there."""
+    found = [find_module(name) for name in names]
+    if not any(found):
+        print(f"SKIPPED: GLINT_NODE_MODULES names no folder with {' or '.join(names)} (npm install --force {names[0]})")
         sys.exit(SKIPPED)
-    return pathlib.Path(folder, name).resolve()
+    return found
 
 
 class VulkanTest(unittest.TestCase):

@@ -21,10 +21,12 @@ class VulkanInfo(VulkanTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("QUEUE_GRAPHICS", result.stdout)
         self.assertRegex(result.stdout, r"independentBlend\s+= true")
-        self.assertIn("the device announces graphics and has none of it", result.stderr)
+        self.assertRegex(result.stdout, r"conformanceVersion:\s+major\s+= 1\s+minor\s+= 3\s")
+        self.assertIn("the device announces graphics and has none of it, and a conformance that nobody certified", result.stderr)
         without = self.run_on_glint("vulkaninfo").stdout
         self.assertNotIn("QUEUE_GRAPHICS", without)
         self.assertRegex(without, r"independentBlend\s+= false")
+        self.assertRegex(without, r"conformanceVersion:\s+major\s+= 0\s+minor\s+= 0\s")
 
     def test_an_unknown_queue_is_refused(self):
         result = self.run_on_glint("vulkaninfo", GLINT_VK_QUEUE="all")

@@ -1,10 +1,15 @@
 // Computes with WebGPU: doubles and sums numbers with a shader in WGSL, and prints what came back as JSON.
 // usage: node webgpu_client.mjs MODULE, where MODULE is the folder of npm's module webgpu
+//        deno run --allow-all webgpu_client.mjs, which has a WebGPU of its own
 // SPDX-License-Identifier: Apache-2.0
+import process from 'node:process';
 import { pathToFileURL } from 'node:url';
 
-const { create, globals } = await import(pathToFileURL(process.argv[2] + '/index.js'));
-Object.assign(globalThis, globals);
+async function dawn(folder) {
+  const { create, globals } = await import(pathToFileURL(folder + '/index.js'));
+  Object.assign(globalThis, globals);
+  return create(['backend=vulkan']);
+}
 
 const COUNT = 1000, GROUP = 64;
 const SHADER = `
@@ -30,7 +35,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
 }`;
 
 async function main() {
-  const adapter = await create(['backend=vulkan']).requestAdapter();
+  const gpu = process.argv[2] ? await dawn(process.argv[2]) : navigator.gpu;
+  const adapter = await gpu.requestAdapter();
   if (!adapter) throw new Error('there is no adapter');
   const device = await adapter.requestDevice();
   device.addEventListener('uncapturederror', (event) => console.error(event.error.message));

@@ -102,6 +102,9 @@ class Window(VulkanTest):
         index = json.loads((self.folder / "drawn/index.json").read_text())
         self.assertEqual([(each["what"], each["count"]) for each in index["dropped"]], [("draws with graphics pipeline 1", 2)])
         self.assertEqual(index["commands"][-1]["dropped"], 2)
+        cleared = 40 * 24 * 4 + 40 * 4 * 4  # The pass clears all of the image, and then four of its rows.
+        transfers = [(each["count"], each["bytes"]) for each in index["commands"] if each["kind"] == "transfer"]
+        self.assertEqual(transfers, [(2, cleared)])
 
     def test_a_universal_device_has_three_families_of_queues(self):
         result = self.run_on_glint(CLIENT, "[families]", GLINT_VK_QUEUE="universal")
