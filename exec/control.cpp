@@ -174,14 +174,11 @@ bool Control::branch_indexed(WarpContext& warp, const isa::Inst& inst) {
 }
 
 bool Control::call_function(WarpContext& warp, uint32_t target) {
-  // Choice: PTX programs with a stack of their own end long before this number, which catches recursion
-  // without end.
-  constexpr size_t kMaxNesting = 1 << 16;
   SimtStack& simt = warp.simt;
   const LaneMask exec = warp.regs.exec;
   const uint32_t back = simt.pc + 1;
   if (exec == 0) return simt.pc = back, true;
-  if (simt.depth() >= kMaxNesting)
+  if (simt.depth() >= SimtStack::kMaxDepth)
     return faults_.fail(warp, std::countr_zero(exec), "calls are nested without end");
   simt.push_call(back, simt.active & ~exec, warp.depth, world_.image->shader_of[simt.pc], warp.callables,
                  true);

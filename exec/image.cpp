@@ -77,6 +77,10 @@ void append(Image& image, const isa::Program& program, std::vector<uint32_t>& co
   GLINT_CHECK_LE(constants.size(), size_t(isa::kSlotIndexMask));
   image.files.insert(image.files.end(), program.files.begin(), program.files.end());
   image.num_registers = std::max(image.num_registers, program.num_registers);
+  if (program.function) {
+    image.functions.resize(std::max<size_t>(image.functions.size(), program.function + 1), kNoShader);
+    image.functions[program.function] = uint32_t(image.shaders.size());
+  }
   image.shaders.push_back(std::move(shader));
   image.programs.push_back(program);
 }

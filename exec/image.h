@@ -80,6 +80,8 @@ struct Image {
   std::vector<std::string> files;
   std::vector<uint32_t> shader_of;  // one per instruction
   std::vector<Shader> shaders;
+  // By number of a function (isa::Program::function): the index in `shaders`, or kNoShader.
+  std::vector<uint32_t> functions;
   std::vector<isa::Program> programs;  // one per shader, as they were compiled; for listings
   Rows constants;
   uint32_t num_registers = 1;  // the highest of all shaders

@@ -31,8 +31,11 @@ bool LocalMemory::check(WarpContext& warp, const isa::OpRow& row, LaneMask& lane
       if (stack_pointer + frame > world_.local_bytes)
         return faults_.fail(
             warp, lane,
-            what(fmt::format("{}, and it overflows: {} are in use and the shader's frame takes {}", size,
-                             stack_pointer, frame)));
+            what(fmt::format("{}, and it overflows: {} are in use and the shader's frame takes {}{}", size,
+                             stack_pointer, frame,
+                             world_.image->functions.empty()
+                                 ? ""
+                                 : "; 'stack_bytes' of a launch file gives functions of PTX a larger one")));
       if (!faults_.let_pass(warp, lane, FaultKind::OutOfBounds, [&] { return what(size); })) return false;
       lanes &= ~(LaneMask{1} << lane);
     } else if (address % part != 0) {

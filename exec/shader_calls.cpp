@@ -1,10 +1,11 @@
-// Calls other shaders: one path for each distinct shader that the lanes call.
+// Calls other shaders and functions: one path for each distinct one that the lanes call.
 // SPDX-License-Identifier: Apache-2.0
 #include "exec/shader_calls.h"
 
 #include <bit>
 #include <fmt/format.h>
 #include <memory>
+#include <string>
 
 #include "base/num_lanes.h"
 #include "exec/hit_records.h"
@@ -17,6 +18,7 @@ using isa::Effect;
 using rt::RayStatus;
 
 bool ShaderCalls::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row) {
+  if (row.effect == Effect::CallFunction) return call_function(warp, inst);
   return row.effect == Effect::CallCallable ? call_callable(warp, inst) : call(warp, row.effect);
 }
 
@@ -27,7 +29,7 @@ bool ShaderCalls::call(WarpContext& warp, Effect effect) {
   LaneMask callers = 0;
   for_each_lane(warp.regs.exec,
                 [&](int lane) { callers |= LaneMask{target[size_t(lane)] != kNoShader} << lane; });
-  const uint32_t calls = call_by_shader(warp, target, callers, false);
+  const uint32_t calls = call_by_shader(warp, target, callers, Callee::RayShader);
   if (effect != Effect::CallHit) {
     counts_.calls += calls;
     counts_.lanes += num_lanes(callers);
@@ -59,7 +61,29 @@ bool ShaderCalls::call_callable(WarpContext& warp, const isa::Inst& inst) {
     frame.record[i] = warp.regs.access.address[i] = world_.table.callable.address(is_inside ? record : 0);
     callers |= LaneMask{target[i] != kNoShader} << lane;
   }
-  call_by_shader(warp, target, callers, true);
+  call_by_shader(warp, target, callers, Callee::Callable);
+  return true;
+}
+
+// Calls the functions whose numbers the lanes have.
+bool ShaderCalls::call_function(WarpContext& warp, const isa::Inst& inst) {
+  const LaneMask callers = warp.regs.exec;
+  if (callers && warp.simt.depth() >= SimtStack::kMaxDepth)
+    return faults_.fail(warp, std::countr_zero(callers), "calls are nested without end");
+  const std::vector<uint32_t>& functions = world_.image->functions;
+  const uint32_t* const number = warp.regs.read(inst.operand[0]);
+  std::array<uint32_t, kLanes> target;
+  for (LaneMask lanes = callers; lanes; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    const uint32_t n = number[lane];
+    target[size_t(lane)] = n < functions.size() ? functions[n] : kNoShader;
+    if (target[size_t(lane)] == kNoShader)
+      return faults_.fail(warp, lane,
+                          n == 0
+                              ? std::string("calls through a null address")
+                              : fmt::format("calls through the address {:#x}, where no function begins", n));
+  }
+  call_by_shader(warp, target, callers, Callee::Function);
   return true;
 }
 
@@ -130,13 +154,14 @@ bool ShaderCalls::call_targets(WarpContext& warp, Effect effect, std::array<uint
 // Runs the shader of each calling lane, with one path for each distinct shader, in the order of the lowest
 // lane that calls it.
 uint32_t ShaderCalls::call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target,
-                                     LaneMask callers, bool is_callable) {
+                                     LaneMask callers, Callee kind) {
   SimtStack& simt = warp.simt;
   const uint32_t caller = world_.image->shader_of[simt.pc];
   ++simt.pc;
   if (!callers) return 0;
-  simt.push_call(simt.pc, simt.active & ~callers, warp.depth, caller, warp.callables);
-  if (is_callable) ++warp.callables;
+  const bool is_function = kind == Callee::Function;
+  simt.push_call(simt.pc, simt.active & ~callers, warp.depth, caller, warp.callables, is_function);
+  if (kind == Callee::Callable) ++warp.callables;
   uint32_t calls = 0;
   while (callers) {
     const uint32_t shader = target[size_t(std::countr_zero(callers))];
@@ -144,8 +169,10 @@ uint32_t ShaderCalls::call_by_shader(WarpContext& warp, const std::array<uint32_
     for_each_lane(callers, [&](int lane) { same |= LaneMask{target[size_t(lane)] == shader} << lane; });
     callers &= ~same;
     const Shader& callee = world_.image->shaders[shader];
-    called_lanes_[size_t(callee.stage)] += num_lanes(same);
-    called_.fire([&] { return Called{warp, callee.stage, same}; });
+    if (!is_function) {
+      called_lanes_[size_t(callee.stage)] += num_lanes(same);
+      called_.fire([&] { return Called{warp, callee.stage, same}; });
+    }
     fill_specials(world_, warp, same, callee);
     if (calls++ == 0) {
       simt.pc = callee.entry;

@@ -24,7 +24,8 @@ class ShaderCalls {
               CandidateCounts& counts)
       : world_(world), faults_(faults), ray_faults_(ray_faults), called_(called), counts_(counts) {}
 
-  // Calls the shaders that the lanes' rays or their indices ask for. Returns false after a fault.
+  // Calls the shaders or functions that the lanes' rays or their numbers ask for. Returns false after a
+  // fault.
   bool run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row);
   // Ends the shader of the lanes with `effect`, and decides what their stage has to decide.
   void finish_shader(WarpContext& warp, isa::Effect effect);
@@ -36,13 +37,15 @@ class ShaderCalls {
  private:
   bool call(WarpContext& warp, isa::Effect effect);
   bool call_callable(WarpContext& warp, const isa::Inst& inst);
+  bool call_function(WarpContext& warp, const isa::Inst& inst);
   // Fills `target` with the shader of each calling lane, or kNoShader for a null shader, which is decided
   // here at once.
   bool call_targets(WarpContext& warp, isa::Effect effect, std::array<uint32_t, kLanes>& target);
   void call_nothing(WarpContext& warp, int lane, rt::RayState& state, isa::Effect effect);
+  enum class Callee : uint8_t { RayShader, Callable, Function };
   // Returns the number of shaders called.
   uint32_t call_by_shader(WarpContext& warp, const std::array<uint32_t, kLanes>& target, LaneMask callers,
-                          bool is_callable);
+                          Callee kind);
 
   const World& world_;
   FaultGate& faults_;

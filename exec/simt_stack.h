@@ -27,6 +27,9 @@ class SimtStack {
   // An entry that has gone is a place for another one.
   enum class Kind : uint8_t { Path, Join, Call, Gone };
   static constexpr uint32_t kNone = ~0u;
+  // Choice: calls may be nested up to this depth. Programs with a stack of their own end long before, which
+  // catches recursion without end.
+  static constexpr size_t kMaxDepth = 1 << 16;
   struct Entry {
     Kind kind;
     uint32_t pc;

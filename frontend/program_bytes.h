@@ -28,6 +28,7 @@ void for_each_field(Program& p, const Visit& visit) {
   visit(p.labels);
   visit(p.num_registers);
   visit(p.local_bytes);
+  visit(p.function);
   visit(p.payload_bytes);
   visit(p.attribute_bytes);
   visit(p.local_size);

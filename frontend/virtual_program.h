@@ -17,7 +17,16 @@ using VirtualRegister = uint32_t;  // index into VirtualProgram::registers
 inline constexpr VirtualRegister kNoRegister = 0xffff'ffff;
 
 struct VirtualOperand {
-  enum class Kind : uint8_t { None, Register, Constant, Special, StackPointer } kind = Kind::None;
+  // CalleeFrame is the address of the frame of a function that is called, inside of a region of calls: its
+  // parameters and results lie there.
+  enum class Kind : uint8_t {
+    None,
+    Register,
+    Constant,
+    Special,
+    StackPointer,
+    CalleeFrame
+  } kind = Kind::None;
   VirtualRegister reg = kNoRegister;
   uint64_t constant = 0;  // 32 or 64 bits, by the op's operand kind
   isa::Special special = isa::Special::LaneId;
@@ -28,6 +37,7 @@ struct VirtualOperand {
   static VirtualOperand value(uint64_t bits) { return {Kind::Constant, kNoRegister, bits, {}, false}; }
   static VirtualOperand of(isa::Special s) { return {Kind::Special, kNoRegister, 0, s, false}; }
   static VirtualOperand stack_pointer() { return {Kind::StackPointer, kNoRegister, 0, {}, false}; }
+  static VirtualOperand callee_frame() { return {Kind::CalleeFrame, kNoRegister, 0, {}, false}; }
 };
 
 using BlockId = uint32_t;
@@ -36,7 +46,7 @@ inline constexpr BlockId kNoBlock = 0xffff'ffff;
 struct VirtualInst {
   // A Real instruction has an op of the table. SaveLive and RestoreLive enclose a region with calls: the
   // allocator stores every value that is live across the region to the frame at SaveLive and loads it back at
-  // RestoreLive. Within the region, each call.sbt.* destroys all registers and predicates except %r0.
+  // RestoreLive. Within the region, each call.* destroys all registers and predicates except %r0.
   enum class Kind : uint8_t { Real, SaveLive, RestoreLive } kind = Kind::Real;
   uint16_t op = 0;
   VirtualRegister guard = kNoRegister;  // a register of class Predicate
@@ -71,6 +81,7 @@ struct VirtualProgram {
   std::vector<isa::SpirvLine> spirv;  // isa::Line::spirv numbers them from 1
   // These are the bytes of variables and payloads. Spills and saved values are placed after them.
   uint32_t local_bytes = 0;
+  uint32_t function = 0;  // isa::Program::function
   uint32_t payload_bytes = 0, attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
   uint32_t shared_bytes = 0;          // bytes per block of threads

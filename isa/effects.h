@@ -35,6 +35,7 @@ enum class Effect : uint8_t {
   CallAnyHit,
   CallHit,
   CallCallable,
+  CallFunction,  // to the function whose number operand 0 holds; `ret` comes back
   // rt.trace and rt.resume give rays to the RT unit. The answer goes to the predicate of operand slot 0.
   Trace,  // OpRow::detail is its kind (isa/hit_object.h)
   Resume,
@@ -68,7 +69,7 @@ enum class EffectFamily : uint8_t {
   Memory,
   Image,
   Control,
-  ShaderCall,  // runs other shaders, which use all registers and predicates except %r0 (docs/abi.md)
+  ShaderCall,  // runs other programs, which use all registers and predicates except %r0 (docs/abi.md)
   Trace,
   Query,
   HitObject,
@@ -217,6 +218,10 @@ inline constexpr EffectRow kEffects[] = {
      .family = EffectFamily::ShaderCall,
      .finish = Finish::CallRecord,
      .stages = {Stage::RayGeneration, Stage::ClosestHit, Stage::Miss, Stage::Callable}},
+    {.effect = Effect::CallFunction,
+     .family = EffectFamily::ShaderCall,
+     .finish = Finish::Control,
+     .stages = {Stage::Compute}},
     {.effect = Effect::Trace,
      .family = EffectFamily::Trace,
      .finish = Finish::Rays,

@@ -76,6 +76,10 @@ std::string format_float(const Conversion& c, uint64_t bits) {
   return padded(c, sign_of(c, negative) + digits.substr(0, 2), digits.substr(2), c.zeros);
 }
 
+std::string format_text(const Conversion& c, const std::string& text) {
+  return padded(c, "", c.precision >= 0 ? text.substr(0, size_t(c.precision)) : text, false);
+}
+
 }  // namespace
 
 size_t parse_flags(std::string_view text, size_t at, Conversion& out) {
@@ -130,8 +134,11 @@ ParsedMessage parse_message(std::string_view text) {
     at = parse_flags(text, at + 1, piece.conversion);
     if (at < text.size() && text[at] == 'l') piece.conversion.is_wide = true, ++at;
     piece.conversion.letter = at < text.size() ? text[at] : '\0';
-    if (std::string_view("diuxXofFeEgGaA").find(piece.conversion.letter) == std::string_view::npos ||
-        piece.conversion.letter == '\0')
+    const char letter = piece.conversion.letter;
+    const bool is_known = std::string_view("diuxXofFeEgGaAcs").find(letter) != std::string_view::npos;
+    // An address has 64 bits, and a character has not.
+    if (letter == '\0' || !is_known || (letter == 's') > piece.conversion.is_wide ||
+        (letter == 'c' && piece.conversion.is_wide))
       return wrong(fmt::format("'{}' is not a conversion", text.substr(first, at + 1 - first)));
     if (std::max(piece.conversion.width, piece.conversion.precision) > kMaxMessageWidth)
       return wrong(fmt::format("the width is more than {}", kMaxMessageWidth));
@@ -146,14 +153,18 @@ ParsedMessage parse_message(std::string_view text) {
   return out;
 }
 
-std::string format_message(const ParsedMessage& message, std::span<const uint32_t> words) {
+std::string format_message(const ParsedMessage& message, std::span<const uint32_t> words,
+                           const std::function<std::string(uint64_t)>& text_at) {
   std::string out;
   size_t word = 0;
   for (const ParsedMessage::Piece& piece : message.pieces) {
     const Conversion& c = piece.conversion;
     const uint64_t low = words[word], bits = c.is_wide ? low | uint64_t{words[word + 1]} << 32 : low;
     word += c.is_wide ? 2 : 1;
-    out += piece.before + (is_float(c) ? format_float(c, bits) : format_integer(c, bits));
+    out += piece.before + (is_float(c)       ? format_float(c, bits)
+                           : c.letter == 'c' ? format_text(c, std::string(1, char(bits)))
+                           : c.letter == 's' ? format_text(c, text_at ? text_at(bits) : std::string())
+                                             : format_integer(c, bits));
   }
   return out + message.after;
 }

@@ -1,7 +1,9 @@
 // Defines the text of a message that a program prints: conversions as in C, each of a 32- or 64-bit value.
+// The value of %s is the address of a text in global memory.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,7 +20,7 @@ struct Conversion {
   int width = 0;
   int precision = -1;  // -1: none
   bool is_wide = false;
-  char letter = 'd';  // one of d i u x X o, f F e E g G a A
+  char letter = 'd';  // one of d i u x X o, f F e E g G a A, c, s
 };
 inline bool is_float(const Conversion& c) {
   return std::string_view("fFeEgGaA").find(c.letter) != std::string_view::npos;
@@ -41,7 +43,9 @@ struct ParsedMessage {
 };
 ParsedMessage parse_message(std::string_view text);
 
-// Prints as C does in the "C" locale. NaNs and infinities are printed without their payload.
-std::string format_message(const ParsedMessage& message, std::span<const uint32_t> words);
+// Prints as C does in the "C" locale. NaNs and infinities are printed without their payload. `text_at`
+// returns the text at an address, for %s.
+std::string format_message(const ParsedMessage& message, std::span<const uint32_t> words,
+                           const std::function<std::string(uint64_t)>& text_at = {});
 
 }  // namespace glint::isa

@@ -33,6 +33,7 @@ constexpr EffectTest kTests[] = {
     {Effect::CallAnyHit, "tests/ops/ray_tracing.cpp"},
     {Effect::CallHit, "tests/ops/ray_tracing.cpp"},
     {Effect::CallCallable, "tests/ops/callable.cpp"},
+    {Effect::CallFunction, "tests/ops/control.cpp"},
     {Effect::Trace, "tests/ops/ray_tracing.cpp"},
     {Effect::Resume, "tests/ops/ray_tracing.cpp"},
     {Effect::Report, "tests/ops/ray_tracing.cpp"},

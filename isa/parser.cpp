@@ -57,6 +57,8 @@ class Parser {
       stage();
     else if (d == ".registers")
       program_.num_registers = small("a number of registers", kMaxRegisters);
+    else if (d == ".function")
+      program_.function = small("a number of a function");
     else if (d == ".local_bytes")
       program_.local_bytes = small("a number of bytes");
     else if (d == ".payload_bytes")
@@ -77,9 +79,9 @@ class Parser {
       location();
     else
       tokens_.fail(name, "a directive",
-                   did_you_mean(d, {".program", ".stage", ".registers", ".local_bytes", ".payload_bytes",
-                                    ".attribute_bytes", ".local_size", ".shared_bytes", ".const", ".file",
-                                    ".message", ".loc"}));
+                   did_you_mean(d, {".program", ".stage", ".registers", ".function", ".local_bytes",
+                                    ".payload_bytes", ".attribute_bytes", ".local_size", ".shared_bytes",
+                                    ".const", ".file", ".message", ".loc"}));
     if (tokens_.peek().kind != Token::Kind::Newline && tokens_.peek().kind != Token::Kind::End)
       tokens_.fail(tokens_.peek(), "the end of the line after " + d);
   }

@@ -113,7 +113,7 @@ bool same_inst(const Inst& a, const Inst& b) {
 bool Program::operator==(const Program& o) const {
   return name == o.name && stage == o.stage && constants == o.constants && files == o.files &&
          lines == o.lines && num_registers == o.num_registers && local_bytes == o.local_bytes &&
-         payload_bytes == o.payload_bytes && attribute_bytes == o.attribute_bytes &&
+         function == o.function && payload_bytes == o.payload_bytes && attribute_bytes == o.attribute_bytes &&
          local_size == o.local_size && shared_bytes == o.shared_bytes && messages == o.messages &&
          std::equal(code.begin(), code.end(), o.code.begin(), o.code.end(), same_inst);
 }

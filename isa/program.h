@@ -61,6 +61,7 @@ struct Program {
   std::vector<std::pair<uint32_t, std::string>> labels;  // instruction index, name; sorted by index
   uint32_t num_registers = 1;                            // highest register + 1
   uint32_t local_bytes = 0;    // bytes of the stack frame: variables, payloads, spills, saved registers
+  uint32_t function = 0;       // number by which call.function calls it; 0: nothing calls the program
   uint32_t payload_bytes = 0;  // of the payload it reads (hit, miss) or the largest it passes (caller)
   uint32_t attribute_bytes = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};  // compute: threads of a block
@@ -71,6 +72,10 @@ struct Program {
   std::vector<SpirvLine> spirv;
 
   bool operator==(const Program&) const;  // compares code, constants, lines and header fields
+  // Returns whether a launch starts it: whether it ends with exit, and %r0 is 0 at its start.
+  bool is_entry() const {
+    return (stage == Stage::RayGeneration || stage == Stage::Compute) && function == 0;
+  }
 };
 
 }  // namespace glint::isa

@@ -165,6 +165,7 @@ std::string quoted(const std::string& s) {
 std::string header_text(const Program& p) {
   std::string out = fmt::format(".program {}\n.stage {}\n.registers {}\n", quoted(p.name), name_of(p.stage),
                                 p.num_registers);
+  if (p.function) out += fmt::format(".function {}\n", p.function);
   if (p.local_bytes) out += fmt::format(".local_bytes {}\n", p.local_bytes);
   if (p.payload_bytes) out += fmt::format(".payload_bytes {}\n", p.payload_bytes);
   if (p.attribute_bytes) out += fmt::format(".attribute_bytes {}\n", p.attribute_bytes);

@@ -120,11 +120,10 @@ class Verifier {
   }
   void inside(int64_t first) {
     const Space space = row_->memory.space;
-    const bool is_entry = program_.stage == Stage::RayGeneration || program_.stage == Stage::Compute;
     const int64_t end = first + row_->memory.bytes * row_->memory.count;
-    const int64_t size = space == Space::Shared              ? int64_t(program_.shared_bytes)
-                         : space == Space::Local && is_entry ? int64_t(program_.local_bytes)
-                         : space == Space::Const             ? int64_t(kLargestBankBytes)
+    const int64_t size = space == Space::Shared                         ? int64_t(program_.shared_bytes)
+                         : space == Space::Local && program_.is_entry() ? int64_t(program_.local_bytes)
+                         : space == Space::Const                        ? int64_t(kLargestBankBytes)
                          : space == Space::Param ? int64_t(kConstantBankBytes - kPushConstantOffset)
                                                  : INT64_MAX;
     if (first < 0 || end > size)

@@ -139,8 +139,7 @@ class RegionWalk {
 
   // Checks a return. Nothing calls ray generation and compute shaders.
   void returns(uint32_t at, uint32_t stack) {
-    const bool is_entry = program_.stage == Stage::RayGeneration || program_.stage == Stage::Compute;
-    if (is_entry && !stacks_.in_function(stack))
+    if (program_.is_entry() && !stacks_.in_function(stack))
       error(at, "this is a return outside a function: ray generation and compute shaders end with exit");
   }
 

@@ -245,7 +245,9 @@ class ValueFlow {
     for (const OperandKind kind : row.operands.view()) {
       if (kind == OperandKind::Address32 && i.operand[size_t(slot)] == kStackPointer) {
         const int64_t first = state.stack + i.imm, end = first + row.memory.bytes * row.memory.count;
-        if (first < 0 || end > int64_t(program_.local_bytes))
+        // Above the frame lies that of a function that is called, where its parameters and results are.
+        const bool is_of_callee = state.stack >= int64_t(program_.local_bytes) && i.imm >= 0;
+        if (!is_of_callee && (first < 0 || end > int64_t(program_.local_bytes)))
           complain_(at, fmt::format("touches bytes {} to {} of the frame, which has {}", first, end - 1,
                                     program_.local_bytes));
       }

@@ -22,33 +22,40 @@ frontend::PtxOptions ptx_options(const CompilerParams& compiler, bool contract) 
   return out;
 }
 
-KernelWorld::KernelWorld(frontend::Kernel kernel, std::shared_ptr<mem::AddressSpace> memory)
+KernelWorld::KernelWorld(frontend::Kernel kernel, std::shared_ptr<mem::AddressSpace> memory,
+                         ModuleVariables* variables)
     : kernel_(std::move(kernel)), memory_(std::move(memory)) {
-  image = exec::link({kernel_.program});
+  std::vector<isa::Program> programs{kernel_.program};
+  programs.insert(programs.end(), kernel_.functions.begin(), kernel_.functions.end());
+  image = exec::link(programs);
   world.image = &image;
   world.memory = memory_.get();
   world.raygen = 0;
-  world.local_bytes = kernel_.program.local_bytes;
   world.constant_bank.resize(kernel_.constant_bank_bytes);
-  place_variables();
+  ModuleVariables own;
+  place_variables(variables ? *variables : own);
 }
 
-void KernelWorld::place_variables() {
+// Variables that another kernel of the module has placed keep what they hold.
+void KernelWorld::place_variables(ModuleVariables& placed) {
   std::map<std::string, uint64_t> address;  // generic addresses, as pointers in memory hold them
-  std::map<std::string, std::byte*> data;
+  std::map<std::string, std::byte*> data;   // of the variables that are new
   for (const frontend::ModuleVariable& v : kernel_.variables) {
     if (v.is_constant) {
       address[v.name] = isa::window_of(isa::Space::Const) + v.offset;
       data[v.name] = world.constant_bank.data() + v.offset;
     } else {
-      const Address at = memory_->allocate(v.name, std::max<uint64_t>(v.bytes, 1));
-      address[v.name] = at;
-      data[v.name] = memory_->find(at, v.bytes);
+      const auto [known, is_new] = placed.try_emplace(v.name);
+      if (is_new) known->second = memory_->allocate(v.name, std::max<uint64_t>(v.bytes, 1));
+      const Address at = address[v.name] = known->second;
       std::memcpy(world.constant_bank.data() + v.offset, &at, sizeof at);
+      if (!is_new) continue;
+      data[v.name] = memory_->find(at, v.bytes);
     }
     if (!v.initial.empty()) std::memcpy(data[v.name], v.initial.data(), v.initial.size());
   }
-  for (const frontend::ModuleVariable& v : kernel_.variables)
+  for (const frontend::ModuleVariable& v : kernel_.variables) {
+    if (!data.contains(v.name)) continue;
     for (const frontend::ModuleVariable::Pointer& pointer : v.pointers) {
       const auto target = address.find(pointer.symbol);
       if (target == address.end())
@@ -59,6 +66,7 @@ void KernelWorld::place_variables() {
       const uint64_t value = target->second + pointer.addend;
       std::memcpy(data[v.name] + pointer.at, &value, sizeof value);
     }
+  }
 }
 
 void KernelWorld::set_grid(const KernelGrid& grid) {
@@ -87,6 +95,17 @@ void KernelWorld::set_grid(const KernelGrid& grid) {
   check_launch_size(grid.grid, grid.block, SourceLocation{name});
   exec::set_blocks(world, grid.grid, grid.block, kernel_.program.shared_bytes, grid.dynamic_shared_bytes);
   world.in_clusters = kernel_.in_clusters;
+  set_stack(grid.stack_bytes);
+}
+
+void KernelWorld::set_stack(std::optional<uint32_t> bytes) {
+  if (bytes && *bytes > kMostStackBytes)
+    throw UserError(
+        {}, fmt::format("kernel '{}': a stack of {} bytes is larger than the {} that a thread may have",
+                        kernel_.program.name, *bytes, kMostStackBytes));
+  constexpr uint32_t kAlignment = 16;
+  const uint32_t calls = kernel_.functions.empty() ? 0 : bytes.value_or(kDefaultStackBytes);
+  world.local_bytes = kernel_.program.local_bytes + calls / kAlignment * kAlignment;
 }
 
 void KernelWorld::set_arguments(const std::vector<std::vector<std::byte>>& arguments) {

@@ -95,6 +95,7 @@ class Encoder {
       case VirtualOperand::Kind::Special:
         return isa::Slot(isa::kSpecialBank + isa::Slot(operand.special));
       case VirtualOperand::Kind::StackPointer:
+      case VirtualOperand::Kind::CalleeFrame:
         return isa::kStackPointer;
       case VirtualOperand::Kind::None:
         break;
@@ -150,6 +151,7 @@ isa::Program emit(const VirtualProgram& program, const Allocation& allocation, c
   out.scopes = program.scopes;
   out.spirv = program.spirv;
   out.local_bytes = program.local_bytes;
+  out.function = program.function;
   out.payload_bytes = program.payload_bytes;
   out.attribute_bytes = program.attribute_bytes;
   out.local_size = program.local_size;

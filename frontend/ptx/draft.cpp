@@ -22,19 +22,25 @@ bool is_plain_exit(const DraftBlock& block) {
   return block.code.empty() && block.end == DraftBlock::End::Exit;
 }
 
+const char* exit_of(const DraftBlock& block) {
+  return block.returns ? "ret" : "exit";
+}
+
 // Turns the ends of a block into instructions. `after` is the next block in the layout.
 void append_end(VirtualBlock& out, const DraftBlock& block, const std::vector<DraftBlock>& all,
                 BlockId after) {
   if (block.end == DraftBlock::End::Branch) {
     const bool leaves = is_plain_exit(all[block.taken]);
-    VirtualInst choice = jump(leaves ? "exit" : "bra", block.line, leaves ? kNoBlock : block.taken);
+    VirtualInst choice =
+        jump(leaves ? exit_of(all[block.taken]) : "bra", block.line, leaves ? kNoBlock : block.taken);
     choice.guard = block.condition;
     choice.guard_negate = block.negate;
     out.code.push_back(std::move(choice));
     if (!leaves) out.successors.push_back(block.taken);
   }
-  if (block.end == DraftBlock::End::Exit || is_plain_exit(all[block.next])) {
-    out.code.push_back(jump("exit", block.line));
+  const DraftBlock& last = block.end == DraftBlock::End::Exit ? block : all[block.next];
+  if (block.end == DraftBlock::End::Exit || is_plain_exit(last)) {
+    out.code.push_back(jump(exit_of(last), block.line));
     return;
   }
   out.successors.push_back(block.next);

@@ -20,6 +20,7 @@ struct DraftBlock {
   BlockId taken = kNoBlock;
   BlockId next = kNoBlock;  // Goto; Branch: for the other lanes
   isa::Line line;           // line of the end
+  bool returns = false;     // Exit: goes back to the caller of the function, and does not end the lanes
   bool may_unroll = true;   // false: the text forbids to copy the loop that the block heads
 
   std::vector<BlockId> successors() const {

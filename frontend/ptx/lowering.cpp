@@ -28,15 +28,13 @@ KernelLowering::KernelLowering(const Module& module, const Function& entry, cons
       options_(options),
       kernel_(kernel),
       errors_(errors),
-      unsupported_(unsupported) {
+      unsupported_(unsupported),
+      graph_(module, entry) {
   for (const Declaration& d : module.variables) module_variables_[d.name] = &d;
   for (const Function& f : module.functions) functions_[f.name] = &f;
-  program_.name = entry.name;
-  program_.stage = isa::Stage::Compute;
-  program_.files = {module.file};
 }
 
-VirtualProgram KernelLowering::run() {
+std::vector<VirtualProgram> KernelLowering::run() {
   if (const auto& c = entry_.required_cluster; c && uint64_t{(*c)[0]} * (*c)[1] * (*c)[2] != 1)
     no_support(entry_.position,
                fmt::format("not supported: a cluster of {} x {} x {} blocks (.reqnctapercluster)", (*c)[0],
@@ -44,21 +42,42 @@ VirtualProgram KernelLowering::run() {
   scopes_.push_back({{}, {}, true});
   place_parameters();
   place_variables();
-  line_.line = uint32_t(entry_.position.line);
+  std::vector<VirtualProgram> out;
+  out.push_back(lower_body(entry_));
+  for (const Function* f : graph_.called()) {
+    scopes_ = {{{}, {}, true}};
+    out.push_back(lower_body(*f));
+  }
+  kernel_.constant_bank_bytes = std::max(isa::kConstantBankBytes, isa::kPushConstantOffset + bank_bytes_);
+  return out;
+}
+
+VirtualProgram KernelLowering::lower_body(const Function& f) {
+  program_ = {};
+  program_.name = f.name;
+  program_.stage = isa::Stage::Compute;
+  program_.files = {module_.file};
+  draft_ = {};
+  free_ = {};
+  line_.line = uint32_t(f.position.line);
   const BlockId first = new_block("");
-  const BlockId body = new_block(entry_.name);
+  const BlockId body = new_block(f.name);
   begin(first);
   end_goto(body);
   begin(body);
-  predeclare_labels(entry_.body);
-  statements(entry_.body);
-  if (block_ != kNoBlock) end_exit();
+  if (f.is_entry) {
+    predeclare_labels(f.body);
+    statements(f.body);
+    end_exit();
+  } else {
+    lower_function(f);
+  }
   if (errors_.has_errors() || unsupported_.has_errors()) return std::move(program_);
   for (const DraftBlock& block : draft_.blocks)
     for (BlockId next : block.successors())
       if (std::find(draft_.layout.begin(), draft_.layout.end(), next) == draft_.layout.end())
-        error(entry_.position, fmt::format("label '{}' is the target of a branch but is not defined",
-                                           draft_.blocks[next].name));
+        error(f.position, fmt::format("label '{}' is the target of a branch but is not defined",
+                                      draft_.blocks[next].name));
   if (errors_.has_errors()) return std::move(program_);
   keep_yields_in_loops(draft_);
   if (options_.contract) contract(draft_, free_, program_);
@@ -71,7 +90,7 @@ VirtualProgram KernelLowering::run() {
   program_.blocks = lay_out(std::move(draft_));
   zero_what_nobody_wrote(program_);
   if (options_.shape) shape_for_machine(program_);
-  kernel_.constant_bank_bytes = std::max(isa::kConstantBankBytes, isa::kPushConstantOffset + bank_bytes_);
+  enclose_calls(program_);
   return std::move(program_);
 }
 
@@ -93,123 +112,6 @@ void KernelLowering::zero_what_nobody_wrote(VirtualProgram& program) {
   });
   std::vector<VirtualInst>& code = program.blocks.front().code;
   code.insert(code.begin(), zeros.begin(), zeros.end());
-}
-
-namespace {
-
-uint64_t aligned(uint64_t at, uint64_t align) {
-  return align ? (at + align - 1) / align * align : at;
-}
-
-}  // namespace
-
-void KernelLowering::place_parameters() {
-  uint64_t at = 0;
-  for (const Declaration& d : entry_.parameters) {
-    at = aligned(at, d.alignment());
-    Symbol symbol;
-    symbol.kind = Symbol::Kind::Variable;
-    symbol.type = d.type;
-    symbol.space = VariableSpace::Param;
-    symbol.address = at;
-    scopes_.front().names[d.name] = symbol;
-    kernel_.parameters.push_back(
-        {d.name, uint32_t(at), uint32_t(d.bytes()), fmt::format("{}{}", d.type.kind, d.type.bits)});
-    at += d.bytes();
-  }
-  bank_bytes_ = uint32_t(aligned(at, 8));
-}
-
-// Collects the names in the kernel and in the functions that it may call, and the shared variables declared
-// there.
-void KernelLowering::collect_names(const std::vector<Statement>& list, std::set<std::string>& used,
-                                   std::set<const Function*>& seen) {
-  const auto visit = [&](const Operand& o, auto&& self) -> void {
-    used.insert(o.name);
-    for (const Operand& part : o.parts) self(part, self);
-    const auto f = functions_.find(o.name);
-    if (f != functions_.end() && seen.insert(f->second).second) collect_names(f->second->body, used, seen);
-  };
-  for (const Statement& s : list) {
-    for (const Operand& o : s.instruction.operands) visit(o, visit);
-    if (s.kind == Statement::Kind::Declaration && s.declaration.space == VariableSpace::Shared &&
-        !s.declaration.is_extern)
-      place_shared({&s.declaration});
-    collect_names(s.body, used, seen);
-  }
-}
-
-void KernelLowering::place_shared(const std::vector<const Declaration*>& declarations) {
-  for (const Declaration* d : declarations) {
-    const uint64_t at = aligned(static_shared_, d->alignment());
-    shared_[d] = at;
-    static_shared_ = at + d->bytes();
-  }
-}
-
-void KernelLowering::place_variables() {
-  std::set<std::string> used;
-  std::set<const Function*> seen;
-  collect_names(entry_.body, used, seen);
-  // A variable to which a used variable points is used, too.
-  for (bool grew = true; grew;) {
-    grew = false;
-    for (const auto& [name, d] : module_variables_)
-      if (used.contains(name))
-        for (const Initializer& value : d->initial)
-          grew |= !value.symbol.empty() && used.insert(value.symbol).second;
-  }
-  std::vector<const Declaration*> open;
-  for (const Declaration& d : module_.variables) {
-    if (!used.contains(d.name) || d.space != VariableSpace::Shared) continue;
-    if (d.is_extern || d.has_open_dimension) {
-      open.push_back(&d);
-    } else {
-      place_shared({&d});
-    }
-  }
-  // Dynamic shared memory begins after the static part, and all of its names refer to that place.
-  uint64_t align = 16;
-  for (const Declaration* d : open) align = std::max<uint64_t>(align, d->alignment());
-  if (!open.empty()) static_shared_ = aligned(static_shared_, align);
-  for (const Declaration* d : open) shared_[d] = static_shared_;
-  for (const Declaration& d : module_.variables)
-    if (used.contains(d.name)) placed_[d.name] = module_variable(d);
-}
-
-Symbol KernelLowering::module_variable(const Declaration& d) {
-  Symbol symbol;
-  symbol.kind = Symbol::Kind::Variable;
-  symbol.type = d.type;
-  symbol.space = d.space;
-  if (d.space == VariableSpace::Shared) {
-    symbol.address = shared_.at(&d);
-    return symbol;
-  }
-  if (d.is_extern)
-    no_support(
-        d.position,
-        fmt::format("variable '{}' belongs to another module, and Glint does not link modules", d.name));
-  ModuleVariable variable;
-  variable.name = d.name;
-  variable.bytes = d.bytes();
-  variable.is_constant = d.space == VariableSpace::Const;
-  bank_bytes_ = uint32_t(aligned(bank_bytes_, variable.is_constant ? d.alignment() : 8));
-  symbol.address = bank_bytes_;
-  variable.offset = isa::kPushConstantOffset + bank_bytes_;
-  bank_bytes_ += variable.is_constant ? uint32_t(d.bytes()) : 8;
-  const size_t element = d.type.bits / 8;
-  for (const Initializer& value : d.initial) {
-    const size_t at = variable.initial.size();
-    if (!value.symbol.empty()) variable.pointers.push_back({at, value.symbol, value.value});
-    for (size_t i = 0; i < element; ++i)
-      variable.initial.push_back(value.symbol.empty() ? std::byte(value.value >> (8 * i)) : std::byte{});
-  }
-  if (variable.initial.size() > variable.bytes)
-    error(d.position, fmt::format("'{}' has {} bytes, but values for {}", d.name, variable.bytes,
-                                  variable.initial.size()));
-  kernel_.variables.push_back(std::move(variable));
-  return symbol;
 }
 
 BlockId KernelLowering::new_block(const std::string& name) {
@@ -255,9 +157,14 @@ void KernelLowering::end_exit() {
 
 void KernelLowering::predeclare_labels(const std::vector<Statement>& list) {
   for (const Statement& s : list) {
-    if (s.kind != Statement::Kind::Label && s.kind != Statement::Kind::Targets) continue;
+    using Kind = Statement::Kind;
+    const bool is_list = s.kind == Kind::Targets || s.kind == Kind::CallTargets;
+    if (s.kind != Kind::Label && s.kind != Kind::Prototype && !is_list) continue;
     Symbol symbol;
-    symbol.kind = s.kind == Statement::Kind::Label ? Symbol::Kind::Label : Symbol::Kind::Targets;
+    symbol.kind = s.kind == Kind::Label ? Symbol::Kind::Label
+                  : is_list             ? Symbol::Kind::Targets
+                                        : Symbol::Kind::Prototype;
+    symbol.signature = &s.signature;
     if (symbol.kind == Symbol::Kind::Label) symbol.block = new_block(s.label);
     symbol.targets = &s.targets;
     if (!scopes_.back().names.emplace(s.label, symbol).second)
@@ -289,6 +196,8 @@ void KernelLowering::statements(const std::vector<Statement>& list) {
         lower(s.instruction);
         break;
       case Statement::Kind::Targets:
+      case Statement::Kind::CallTargets:
+      case Statement::Kind::Prototype:
         break;
       case Statement::Kind::Pragma:
         if (block_ != kNoBlock && s.label.find("nounroll") != std::string::npos)
@@ -296,46 +205,6 @@ void KernelLowering::statements(const std::vector<Statement>& list) {
         break;
     }
   }
-}
-
-void KernelLowering::declare(const Declaration& d) {
-  Symbol symbol;
-  symbol.type = d.type;
-  symbol.space = d.space;
-  if (d.space == VariableSpace::Register) {
-    if (d.type.bits > 64)
-      return no_support(d.position, fmt::format("not supported: registers of {} bits", d.type.bits));
-    if (d.range) {
-      scopes_.back().ranges.push_back(&d);
-      return;
-    }
-    if (d.vector > 1)
-      for (uint32_t i = 0; i < d.vector; ++i) symbol.elements.push_back(temporary(class_of(d.type)));
-    else
-      symbol.reg = temporary(class_of(d.type));
-  } else if (d.space == VariableSpace::Param) {
-    symbol.kind = Symbol::Kind::Parameter;
-    for (uint64_t i = 0; i < (d.bytes() + 3) / 4; ++i)
-      symbol.elements.push_back(temporary(RegisterClass::B32));
-  } else {
-    symbol.kind = Symbol::Kind::Variable;
-    if (d.space == VariableSpace::Local) {
-      symbol.address = aligned(program_.local_bytes, d.alignment());
-      if (symbol.address + d.bytes() > kMostLocalBytes)
-        return no_support(d.position,
-                          fmt::format("not supported: '{}': more than {} bytes of local memory of one thread",
-                                      d.name, kMostLocalBytes));
-      program_.local_bytes = uint32_t(aligned(symbol.address + d.bytes(), 4));
-    } else if (d.space == VariableSpace::Shared && !d.is_extern) {
-      symbol.address = shared_.at(&d);
-    } else {
-      return no_support(
-          d.position,
-          fmt::format("not supported: '{}': global, constant and extern variables inside a function",
-                      d.name));
-    }
-  }
-  scopes_.back().names[d.name] = symbol;
 }
 
 // Makes a register of a range when it is first named, such as %r7 of `.reg .b32 %r<10>`.

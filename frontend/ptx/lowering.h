@@ -1,8 +1,10 @@
-// Lowers one kernel from its text to a graph of blocks, with the functions that it calls inlined.
+// Lowers one kernel from its text to graphs of blocks: one for the kernel, with most functions inlined, and
+// one for each function that has code of its own.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "frontend/ptx/call_graph.h"
 #include "frontend/ptx/contraction.h"
 #include "frontend/ptx/draft.h"
 #include "frontend/ptx/ptx.h"
@@ -25,7 +28,8 @@ struct Symbol {
     Variable,   // at `address` of its space
     Parameter,  // of a function; `elements` are its 32-bit words
     Label,      // of `block`
-    Targets     // list of a brx.idx
+    Targets,    // list of a brx.idx or of a call through a register
+    Prototype   // of a call through a register
   } kind = Kind::Register;
   Type type;
   VirtualRegister reg = kNoRegister;
@@ -35,6 +39,7 @@ struct Symbol {
   uint64_t address = 0;
   BlockId block = kNoBlock;
   const std::vector<std::string>* targets = nullptr;
+  const Signature* signature = nullptr;  // of a Prototype
 };
 
 struct Scope {
@@ -55,21 +60,24 @@ class KernelLowering {
  public:
   KernelLowering(const Module& module, const Function& entry, const PtxOptions& options, Kernel& kernel,
                  Diagnostics& errors, Diagnostics& unsupported);
-  // Returns the program before register allocation. Mistakes are reported to the diagnostics.
-  VirtualProgram run();
+  // Returns the programs before register allocation: the kernel, and then the functions that it calls.
+  // Mistakes are reported to the diagnostics.
+  std::vector<VirtualProgram> run();
   uint64_t static_shared_bytes() const { return static_shared_; }
 
  private:
-  // These functions are in lowering.cpp: names, blocks, statements.
-  void place_variables();
-  void collect_names(const std::vector<Statement>& statements, std::set<std::string>& used,
-                     std::set<const Function*>& seen);
-  void place_shared(const std::vector<const Declaration*>& declarations);
+  // These functions are in lowering_variables.cpp.
   void place_parameters();
+  void place_variables();
+  void collect_names(const std::vector<Statement>& statements, std::set<std::string>& used);
+  void place_shared(const std::vector<const Declaration*>& declarations);
   Symbol module_variable(const Declaration& d);
+  void declare(const Declaration& d);
+
+  // These functions are in lowering.cpp: bodies, names, blocks, statements.
+  VirtualProgram lower_body(const Function& f);
   void statements(const std::vector<Statement>& list);
   void predeclare_labels(const std::vector<Statement>& list);
-  void declare(const Declaration& d);
   void lower(const Instruction& inst);
   void zero_what_nobody_wrote(VirtualProgram& program);
 
@@ -166,11 +174,40 @@ class KernelLowering {
   void lower_branch(const Instruction& inst);
   void lower_indexed_branch(const Instruction& inst);
   void lower_return(const Instruction& inst, bool whole_kernel);
-  void lower_call(const Instruction& inst);
-  void inline_call(const Instruction& inst, const Function& callee, const std::vector<Operand>& results,
-                   const std::vector<Operand>& arguments);
-  Symbol bind_parameter(const Declaration& formal, const Operand* actual);
   BlockId label(const std::string& name, TextPosition position);
+
+  // These functions are in lowering_calls.cpp.
+  struct Call {
+    const Function* callee = nullptr;  // null: a call through a register
+    const Signature* signature = nullptr;
+    std::string name;
+    VirtualOperand number;  // of the function (CallGraph::number_of)
+    std::vector<Operand> results, arguments;
+  };
+  void lower_call(const Instruction& inst);
+  bool find_callee(const Instruction& inst, const Operand& name, size_t at, Call& call);
+  void inline_call(const Call& call, BlockId behind);
+  void call_function(const Call& call);
+  void lower_function(const Function& f);
+  Symbol bind_parameter(const Declaration& formal, const Operand* actual);
+  Symbol words_for(Declaration formal, const Operand* actual);
+  void copy_result(const Symbol& symbol, const Operand& to);
+  void move_frame_words(bool is_store, const VirtualOperand& frame, uint32_t at,
+                        const std::vector<VirtualRegister>& words);
+
+  // These functions are in lowering_runtime.cpp.
+  bool lower_runtime_call(const Call& call);
+  void lower_vprintf(const Call& call, const std::vector<Symbol>& parameters);
+  void lower_assertfail(const Call& call, const std::vector<Symbol>& parameters);
+  void lower_malloc(const Call& call, const std::vector<Symbol>& parameters);
+  void lower_free(const Call& call, const std::vector<Symbol>& parameters);
+  void give_result(const Call& call, const VirtualOperand& value, bool wide);
+  void print(const std::string& text, std::vector<VirtualOperand> words, bool ends);
+  VirtualOperand pointer_of(const Symbol& parameter);
+  const VirtualInst* definition(VirtualRegister r) const;
+  std::optional<std::string> constant_text(const Symbol& parameter) const;
+  std::optional<std::string> text_of_variable(uint64_t place) const;
+  uint64_t heap_place();
 
   const Module& module_;
   const Function& entry_;
@@ -188,13 +225,19 @@ class KernelLowering {
   std::map<std::string, Symbol> placed_;           // variables of the module that the kernel uses
   uint32_t bank_bytes_ = 0;                        // bytes used, from kPushConstantOffset
   uint64_t static_shared_ = 0;
-  std::vector<std::pair<const Function*, BlockId>> calls_;  // open calls and the blocks to which they return
+  std::optional<uint64_t> heap_place_;  // heap_place(), once it is there
+  const CallGraph graph_;
+  std::vector<BlockId> returns_to_;  // where `ret` goes, in open inlined functions and in a called one
   VirtualRegister guard_ = kNoRegister;
   bool guard_negate_ = false;
   isa::Line line_;
   std::vector<LateMove> late_;  // emitted after the instruction
   FreeArithmetic free_;
 };
+
+// Puts each call of a function, the stores of its parameters before it and the loads of its results behind it
+// between SaveLive and RestoreLive. It runs after the passes that change drafts, which do not know regions.
+void enclose_calls(VirtualProgram& program);
 
 // Returns the class of a PTX register: 8, 16 and 32 bits need one register of the ISA, 64 bits need a pair.
 RegisterClass class_of(const Type& type);

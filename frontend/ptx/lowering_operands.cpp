@@ -135,6 +135,12 @@ VirtualOperand KernelLowering::special_source(const Operand& o, bool wide, bool&
 }
 
 VirtualOperand KernelLowering::address_of(const Symbol& symbol, int64_t offset, bool wide) {
+  if (symbol.space == VariableSpace::Local && program_.function) {
+    const VirtualOperand at =
+        compute32("add.u32", {VirtualOperand::stack_pointer(),
+                              VirtualOperand::value(uint32_t(symbol.address + uint64_t(offset)))});
+    return wide ? widened(at, false) : at;
+  }
   if (symbol.space != VariableSpace::Global) {
     const uint64_t base = symbol.space == VariableSpace::Const ? isa::kPushConstantOffset : 0;
     return VirtualOperand::value(base + symbol.address + uint64_t(offset));
@@ -162,14 +168,9 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
     bool found = false;
     const VirtualOperand special = special_source(o, wide, found);
     if (found) return special;
-    if (functions_.contains(o.name)) {
-      no_support(
-          o.position,
-          fmt::format("not supported: the address of function '{}': calls must name their function", o.name));
-    } else {
-      error(o.position,
-            fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
-    }
+    if (functions_.contains(o.name)) return VirtualOperand::value(graph_.number_of(o.name));
+    error(o.position,
+          fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
     return VirtualOperand::value(0);
   }
   if (symbol->kind == Symbol::Kind::Variable) return address_of(*symbol, o.offset, wide);

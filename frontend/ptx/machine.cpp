@@ -240,6 +240,7 @@ void exit_at_branches(Draft& draft) {
     DraftBlock copy;
     copy.name = taken.name;
     copy.line = taken.line;
+    copy.returns = taken.returns;
     // The copy is not placed last, because the last exit is where lanes meet.
     draft.layout.insert(draft.layout.begin() + 1, BlockId(draft.blocks.size()));
     draft.blocks[b].taken = BlockId(draft.blocks.size());

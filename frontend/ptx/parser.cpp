@@ -304,7 +304,7 @@ class Parser {
       s.label = in_.next().text;
       in_.next();
       if (in_.is_dot("branchtargets") || in_.is_dot("calltargets") || in_.is_dot("callprototype"))
-        return label_list(std::move(s), out);
+        return list_or_prototype(std::move(s), out);
       s.kind = Statement::Kind::Label;
     } else {
       s.instruction = instruction();
@@ -312,13 +312,26 @@ class Parser {
     out.push_back(std::move(s));
   }
 
-  void label_list(Statement s, std::vector<Statement>& out) {
-    if (in_.next().text != "branchtargets") return skip_to_semicolon();
-    s.kind = Statement::Kind::Targets;
-    do s.targets.push_back(in_.expect_word("a label"));
-    while (in_.accept(","));
+  void list_or_prototype(Statement s, std::vector<Statement>& out) {
+    const std::string directive = in_.next().text;
+    if (directive == "callprototype") {
+      prototype(s);
+    } else {
+      s.kind = directive == "branchtargets" ? Statement::Kind::Targets : Statement::Kind::CallTargets;
+      do s.targets.push_back(in_.expect_word(directive == "branchtargets" ? "a label" : "a function"));
+      while (in_.accept(","));
+    }
     in_.expect(";");
     out.push_back(std::move(s));
+  }
+
+  // Reads what follows .callprototype, such as `(.param .b32 _) _ (.param .b64 _) .noreturn`.
+  void prototype(Statement& s) {
+    s.kind = Statement::Kind::Prototype;
+    if (in_.is_mark("(")) s.signature.results = parameters();
+    in_.expect_word("'_'");
+    if (in_.is_mark("(")) s.signature.parameters = parameters();
+    while (!in_.at_end() && !in_.is_mark(";")) in_.next();  // .noreturn and hints
   }
 
   Instruction instruction() {

@@ -49,7 +49,7 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
   kernel.in_clusters = function.required_cluster.has_value();
   Diagnostics errors, unsupported;
   ptx::KernelLowering lowering(module, function, options, kernel, errors, unsupported);
-  VirtualProgram program = lowering.run();
+  std::vector<VirtualProgram> programs = lowering.run();
   if (errors.has_errors()) {
     for (const std::string& message : unsupported.messages()) errors.error({}, message);
     errors.throw_if_errors();
@@ -58,7 +58,9 @@ Kernel compile_ptx(std::string_view text, const std::string& file, const std::st
     throw UnsupportedError(fmt::format("{}", fmt::join(unsupported.messages(), "\n")));
   BackendOptions backend = options.backend;
   backend.like_an_assembler = options.shape;
-  kernel.program = assemble(std::move(program), backend);
+  kernel.program = assemble(std::move(programs.front()), backend);
+  for (size_t i = 1; i < programs.size(); ++i)
+    kernel.functions.push_back(assemble(std::move(programs[i]), backend));
   kernel.program.shared_bytes = uint32_t(lowering.static_shared_bytes());
   return kernel;
 }

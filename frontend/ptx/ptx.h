@@ -41,7 +41,8 @@ struct ModuleVariable {
 };
 
 struct Kernel {
-  isa::Program program;  // shared_bytes: the static part
+  isa::Program program;                 // shared_bytes: the static part
+  std::vector<isa::Program> functions;  // that it calls, because they cannot be a part of it
   std::vector<KernelParameter> parameters;
   std::vector<ModuleVariable> variables;
   uint32_t constant_bank_bytes = isa::kConstantBankBytes;                // the minimum that the kernel needs
@@ -50,6 +51,10 @@ struct Kernel {
   // __cluster_dims__(1).
   bool in_clusters = false;
 };
+
+inline constexpr uint64_t kDefaultHeapBytes = 8 << 20;
+// The heap begins with the number of bytes that are in use.
+inline constexpr uint64_t kHeapHeader = 16;
 
 struct PtxOptions {
   BackendOptions backend;
@@ -60,6 +65,8 @@ struct PtxOptions {
   // Changes the program as the hardware's assembler does (frontend/ptx/machine.h), which gives fewer
   // instructions and the same results.
   bool shape = true;
+  // Bytes that kernels can take with malloc and new. Choice: the default is CUDA's (cudaLimitMallocHeapSize).
+  uint64_t heap_bytes = kDefaultHeapBytes;
   // Refuses registers and numbers whose types PTX does not allow where they stand. Without the check, a test
   // reaches the half of a register that a value of 16 bits leaves open.
   bool check_types = true;
@@ -68,8 +75,9 @@ struct PtxOptions {
 // Returns the names of a module's kernels, in the order of the text.
 std::vector<std::string> kernel_names(std::string_view text, const std::string& file);
 
-// Compiles one kernel with the functions that it calls inlined. `entry` may be empty when the module has only
-// one kernel. A UserError or UnsupportedError lists every mistake, with file, line and column.
+// Compiles one kernel. Functions that it calls become part of it, but for those that call themselves or are
+// called through a register. `entry` may be empty when the module has only one kernel. A UserError or
+// UnsupportedError lists every mistake, with file, line and column.
 Kernel compile_ptx(std::string_view text, const std::string& file, const std::string& entry,
                    const PtxOptions& options);
 

@@ -75,27 +75,34 @@ struct Declaration {
   uint32_t alignment() const { return align ? align : vector * type.bits / 8; }
 };
 
+// Says what a function gives and takes.
+struct Signature {
+  std::vector<Declaration> results, parameters;
+};
+
 struct Statement {
   enum class Kind : uint8_t {
     Label,
     Instruction,
     Declaration,
     Scope,
-    Targets,
+    Targets,      // .branchtargets
+    CallTargets,  // .calltargets
+    Prototype,    // .callprototype
     Pragma
   } kind = Kind::Instruction;
-  std::string label;  // of a Label; for Targets, the name of the list; for a Pragma, its text
+  std::string label;  // of a Label; for lists and prototypes, their name; for a Pragma, its text
   Instruction instruction;
   Declaration declaration;
   std::vector<Statement> body;       // of a Scope
-  std::vector<std::string> targets;  // of Targets
+  std::vector<std::string> targets;  // of Targets and CallTargets
+  Signature signature;               // of a Prototype
   TextPosition position;
 };
 
-struct Function {
+struct Function : Signature {
   std::string name;
   bool is_entry = false, has_body = false;
-  std::vector<Declaration> results, parameters;
   std::vector<Statement> body;
   std::optional<std::array<uint32_t, 3>> required_block, largest_block;  // .reqntid, .maxntid
   std::optional<std::array<uint32_t, 3>> required_cluster;               // .reqnctapercluster

@@ -34,7 +34,11 @@ struct Ran {
   std::vector<uint32_t> words;
 };
 Ran run_case(const ControlCase& test, const isa::OpRow& row, bool timing) {
-  exec::TextLaunch launch(program_of(test), {.block = {test.threads, 1, 1}, .shared_bytes = 1024});
+  exec::TextLaunch launch(program_of(test), {.block = {test.threads, 1, 1},
+                                             .shared_bytes = 1024,
+                                             .local_bytes = test.called.empty() ? 0u : 16u,
+                                             .functions = test.called,
+                                             .stack_bytes = test.called.empty() ? 0u : 4096u});
   Ran out;
   exec::PrintLog log;
   launch.world.prints = &log;

@@ -146,6 +146,73 @@ ControlWords call(uint32_t thread) {
   return {inner(value), 0xffff'ffff};
 }
 
+// Each lane hands its number to a function and takes the answer from the same place, at the start of the
+// function's frame.
+std::string call_function(std::string_view number) {
+  return std::string(R"(
+    add.u32 %r0, %r0, 16;
+    st.local.b32 [%r0], %r4;
+    setp.lt.u32 %p1, %r4, 28;
+    rem.u32 %r5, %r4, 3;
+    mad.lo.u32 %r5, %r5, 2, 1;
+    @%p1 call.function )") +
+         std::string(number) + R"(;
+    ld.local.b32 %r20, [%r0];
+    sub.u32 %r0, %r0, 16;
+    mov.b32 %r4, %tid.x;
+    ld.param.b64 %rd2, [0];
+    mad.wide.u32 %rd22, %r4, 8, %rd2;
+    activemask.b32 %r21;
+)";
+}
+const std::vector<std::string> kCalledFunctions = {
+    // This one doubles, but for small numbers.
+    R"(.function 1
+.local_bytes 16
+    ld.local.b32 %r5, [%r0];
+    setp.lt.u32 %p1, %r5, 6;
+    @%p1 ret;
+    shl.b32 %r5, %r5, 1;
+    st.local.b32 [%r0], %r5;
+    ret;
+)",
+    // This one sums all numbers up to its own: it calls itself.
+    R"(.function 3
+.local_bytes 16
+    ld.local.b32 %r5, [%r0];
+    setp.eq.u32 %p1, %r5, 0;
+    @%p1 ret;
+    st.local.b32 [%r0 + 4], %r5;
+    sub.u32 %r5, %r5, 1;
+    add.u32 %r0, %r0, 16;
+    st.local.b32 [%r0], %r5;
+    call.function 3;
+    ld.local.b32 %r6, [%r0];
+    sub.u32 %r0, %r0, 16;
+    ld.local.b32 %r5, [%r0 + 4];
+    add.u32 %r5, %r5, %r6;
+    st.local.b32 [%r0], %r5;
+    ret;
+)",
+    // This one calls the first one, and adds 1000.
+    R"(.function 5
+.local_bytes 16
+    ld.local.b32 %r5, [%r0];
+    add.u32 %r0, %r0, 16;
+    st.local.b32 [%r0], %r5;
+    call.function 1;
+    ld.local.b32 %r6, [%r0];
+    sub.u32 %r0, %r0, 16;
+    add.u32 %r6, %r6, 1000;
+    st.local.b32 [%r0], %r6;
+    ret;
+)"};
+ControlWords called_function(uint32_t thread) {
+  const uint32_t doubled = thread < 6 ? thread : 2 * thread;
+  const uint32_t answers[] = {doubled, thread * (thread + 1) / 2, doubled + 1000};
+  return {thread < 28 ? answers[thread % 3] : thread, 0xffff'ffff};
+}
+
 constexpr const char* kExit = R"(
     and.b32 %r5, %r4, 1;
     setp.eq.u32 %p1, %r5, 1;
@@ -324,6 +391,11 @@ std::vector<ControlCase> make_cases() {
       {"brx.idx", 32, kTable, &table},
       {"call", 32, kCall, &call, "", "", kFunctions},
       {"ret", 32, kCall, &call, "", "", kFunctions},
+      {"call.function", 32, call_function("%r5"), &called_function, "", "", "", "", kCalledFunctions},
+      {"call.function", 32, call_function("0"), nullptr, "calls through a null address", "", "", "",
+       kCalledFunctions},
+      {"call.function", 32, call_function("4"), nullptr,
+       "calls through the address 0x4, where no function begins", "", "", "", kCalledFunctions},
       {"exit", 32, kExit, &leave},
       {"activemask.b32", 32, kActive, &active},
       // A trap whose guard no lane passes does nothing.

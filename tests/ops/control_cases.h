@@ -19,10 +19,11 @@ struct ControlCase {
   uint32_t threads = 32;
   std::string text;
   ControlWords (*expected)(uint32_t thread) = nullptr;
-  std::string fault = {};      // part of the message of the fault that ends the run
-  std::string printed = {};    // what the program prints
-  std::string functions = {};  // code behind the program
-  std::string header = {};     // directives before it
+  std::string fault = {};                // part of the message of the fault that ends the run
+  std::string printed = {};              // what the program prints
+  std::string functions = {};            // code behind the program
+  std::string header = {};               // directives before it
+  std::vector<std::string> called = {};  // programs that call.function calls
 };
 const std::vector<ControlCase>& control_cases();
 // Returns those of them that copy to shared memory or use barriers there.

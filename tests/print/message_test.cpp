@@ -84,8 +84,20 @@ TEST_CASE("a message takes several values, and percent signs stand for themselve
   CHECK(isa::format_message(message, words) == "100% a=7 b=0.50 c=200000001%\n");
 }
 
+TEST_CASE("a message takes characters, and texts from where their addresses point") {
+  const uint32_t words[3] = {'x', 7, 1};
+  const isa::ParsedMessage message = isa::parse_message("<%c%3c|%-6ls|%.2ls>");
+  CHECK(message.error == "the message has 6 words, but a print takes 4");
+  const isa::ParsedMessage shorter = isa::parse_message("<%3c|%-6ls>");
+  REQUIRE(shorter.error.empty());
+  const auto text = [](uint64_t address) {
+    return address == 0x1'0000'0007 ? std::string("abc") : std::string();
+  };
+  CHECK(isa::format_message(shorter, words, text) == "<  x|abc   >");
+}
+
 TEST_CASE("text that is not a conversion, is too wide or takes too many words is an error") {
-  for (const char* bad : {"%", "abc %", "%s", "%5", "%.", "%-", "%l", "%ld%ld%d", "%1000d", "%.1000f",
+  for (const char* bad : {"%", "abc %", "%s", "%lc", "%5", "%.", "%-", "%l", "%ld%ld%d", "%1000d", "%.1000f",
                           "%99999999999d", "%d%d%d%d%d", "%y"}) {
     INFO(bad);
     CHECK(!isa::parse_message(bad).error.empty());

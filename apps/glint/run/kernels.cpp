@@ -23,11 +23,11 @@ std::string read_text(const std::string& path, const SourceLocation& where) {
 }  // namespace
 
 Kernels::Kernels(const LaunchFile& file, const std::string& path, const pipeline::GpuParams& gpu,
-                 const LaunchOptions& options)
+                 const LaunchOptions& options, exec::PrintLog* prints)
     : file_(file), path_(path) {
   std::map<std::string, Address> known;
   for (const KernelLaunch& launch : file.launches) {
-    compile(launch, gpu, options.on_fault);
+    compile(launch, gpu, options.on_fault, prints);
     std::vector<Address>& addresses = buffers_.emplace_back();
     for (const LaunchArgument& argument : launch.arguments) {
       addresses.push_back(argument.is_known ? known.at(argument.name) : 0);
@@ -40,13 +40,17 @@ Kernels::Kernels(const LaunchFile& file, const std::string& path, const pipeline
   for (size_t i = 0; i < file.launches.size(); ++i) prepare(i);
 }
 
-void Kernels::compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu, exec::OnFault on_fault) {
+void Kernels::compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu, exec::OnFault on_fault,
+                      exec::PrintLog* prints) {
   std::unique_ptr<pipeline::KernelWorld>& made = worlds_[{launch.kernel, launch.entry, launch.contract}];
   if (made) return;
   const std::string text = read_text(launch.kernel, launch.kernel_where);
-  const frontend::PtxOptions compiler = pipeline::ptx_options(gpu.compiler, launch.contract);
+  frontend::PtxOptions compiler = pipeline::ptx_options(gpu.compiler, launch.contract);
+  compiler.heap_bytes = launch.heap_bytes;
   made = std::make_unique<pipeline::KernelWorld>(
-      frontend::compile_ptx(text, launch.kernel, launch.entry, compiler), memory_);
+      frontend::compile_ptx(text, launch.kernel, launch.entry, compiler), memory_,
+      &variables_[launch.kernel]);
+  made->world.prints = prints;
   made->world.on_fault = on_fault;
   made->world.layout = gpu.core.layout.make({});
   text_ += text;

@@ -14,13 +14,13 @@
 
 namespace glint::app {
 
-// All launches have one memory. Launches of the same kernel share the variables of its module, too.
+// All launches have one memory. Launches of kernels of the same file share the variables of the module, too.
 class Kernels {
  public:
   // Compiles the kernels, places the buffers, and checks all launches. Throws UserError that names the place
-  // in the launch file, which lies at `path`.
+  // in the launch file, which lies at `path`. What kernels print goes to `prints`; null: nowhere.
   Kernels(const LaunchFile& file, const std::string& path, const pipeline::GpuParams& gpu,
-          const LaunchOptions& options);
+          const LaunchOptions& options, exec::PrintLog* prints = nullptr);
 
   // Returns the world of a launch with its grid and arguments. It is overwritten by the next launch of the
   // same kernel.
@@ -36,13 +36,15 @@ class Kernels {
   void describe_saved(report::RunInfo& info) const;
 
  private:
-  void compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu, exec::OnFault on_fault);
+  void compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu, exec::OnFault on_fault,
+               exec::PrintLog* prints);
   pipeline::KernelWorld& world_of(const KernelLaunch& launch);
 
   using Key = std::tuple<std::string, std::string, bool>;  // kernel, entry, contract
   const LaunchFile& file_;
   const std::string path_;
   std::shared_ptr<mem::AddressSpace> memory_ = std::make_shared<mem::AddressSpace>();
+  std::map<std::string, pipeline::ModuleVariables> variables_;  // by file
   std::map<Key, std::unique_ptr<pipeline::KernelWorld>> worlds_;
   std::vector<std::vector<Address>> buffers_;  // by launch and argument; 0 for numbers
   std::string text_;

@@ -22,6 +22,9 @@ namespace {
 
 const std::vector<std::string> kTypes{"u8", "s8", "u16", "s16", "u32", "s32", "u64", "s64", "f32", "f64"};
 
+// Choice: the heap lies in the host's memory, so it has a limit.
+constexpr int64_t kMostHeapBytes = int64_t{1} << 32;
+
 bool is_type(std::string_view name) {
   return std::find(kTypes.begin(), kTypes.end(), name) != kTypes.end();
 }
@@ -53,7 +56,8 @@ class Reader {
   LaunchFile run() {
     const toml::table root = toml_of_file(path_);
     reject_others(root,
-                  {"kernel", "entry", "grid", "block", "shared_bytes", "contract", "argument", "launch"},
+                  {"kernel", "entry", "grid", "block", "shared_bytes", "stack_bytes", "heap_bytes",
+                   "contract", "argument", "launch"},
                   "a launch file");
     KernelLaunch common;
     common.where = {path_, 0, 0};
@@ -86,6 +90,9 @@ class Reader {
     size_of(table, "block", out.grid.block);
     out.grid.dynamic_shared_bytes =
         uint32_t(integer(table, "shared_bytes", 0, uint32_t(-1)).value_or(out.grid.dynamic_shared_bytes));
+    if (const auto heap = integer(table, "heap_bytes", 0, kMostHeapBytes)) out.heap_bytes = uint64_t(*heap);
+    if (const auto stack = integer(table, "stack_bytes", 0, pipeline::kMostStackBytes))
+      out.grid.stack_bytes = uint32_t(*stack);
     const toml::node* const list = table.get("argument");
     if (!list) return;
     out.arguments.clear();
@@ -97,9 +104,10 @@ class Reader {
 
   // Reads one of several launches, whose defaults are those of the file. Its name is also that of a folder.
   KernelLaunch listed(const toml::table& table, const KernelLaunch& common) {
-    reject_others(
-        table, {"name", "kernel", "entry", "grid", "block", "shared_bytes", "contract", "caches", "argument"},
-        "a launch");
+    reject_others(table,
+                  {"name", "kernel", "entry", "grid", "block", "shared_bytes", "stack_bytes", "contract",
+                   "caches", "argument"},
+                  "a launch");
     KernelLaunch out = common;
     out.where = where(table);
     out.name = text(table, "name").value_or("");

@@ -27,6 +27,7 @@ struct KernelLaunch {
   std::string entry;     // empty: the only entry
   bool contract = true;  // frontend::PtxOptions::contract
   bool warm = false;     // It begins with what the launch before it left in the caches.
+  uint64_t heap_bytes = frontend::kDefaultHeapBytes;  // frontend::PtxOptions::heap_bytes
   pipeline::KernelGrid grid;
   std::vector<LaunchArgument> arguments;
   SourceLocation where, kernel_where;  // of the launch, and of the key that names its kernel

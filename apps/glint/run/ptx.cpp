@@ -89,7 +89,8 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
   job.gpu = gpu_of(session.resources, options);
   job.timing = options.mode == "timing", job.no_skip = options.no_skip;
   check_listed(options.sample, file.is_list(), job.timing, what);
-  Kernels kernels(file, launch_path, job.gpu, options);
+  exec::PrintLog prints(options.print_limit);
+  Kernels kernels(file, launch_path, job.gpu, options, &prints);
   const std::string name =
       file.is_list() ? std::filesystem::path(launch_path).stem().string() : kernels.name(0);
 
@@ -116,7 +117,8 @@ Exit run_ptx(const Session& session, const std::string& what, const std::string&
         files.push_back("statistics " + directory.path_of(options.compact() ? "stats.csv" : "stats.txt"));
         if (file.is_list()) return;  // Each launch has kept its own.
         for (std::string& line : launch.keep(ended, directory)) files.push_back(std::move(line));
-      });
+      },
+      &prints);
   return print_result(session, options.json, job, result, info, title, std::move(files),
                       file.is_list() ? launches.estimates : launch.estimates());
 }

@@ -19,6 +19,9 @@ constexpr OpRow kRows[] = {
         "brx.idx", Effect::BranchIndexed, {Src32, Label},
         "Continues at that branch, counted from 0, in the table of bra at the label. It may split the warp."),
     control("call", Effect::Call, {Label}, "Calls the function at the label, whose ret comes back here."),
+    control("call.function", Effect::CallFunction, {Src32},
+            "Calls the function with that number, whose ret comes back here. Lanes with one number run "
+            "together."),
     control("exit", Effect::Exit, {}, "Ends the lanes."),
     control("ret", Effect::Return, {},
             "Returns from the function or shader. An any-hit shader accepts its candidate."),

@@ -21,6 +21,8 @@ struct TextLaunch {
     std::array<uint32_t, 3> grid{1, 1, 1}, block{32, 1, 1};
     uint32_t shared_bytes = 0, dynamic_bytes = 0, local_bytes = 0;
     uint32_t buffer_words = 1024;
+    std::vector<std::string> functions = {};  // programs that call.function calls, each with its directives
+    uint32_t stack_bytes = 0;                 // that they have, behind `local_bytes`
   };
 
   TextLaunch(const std::string& body, Options options, isa::Stage stage = isa::Stage::Compute) {
@@ -29,15 +31,18 @@ struct TextLaunch {
     programs.back().stage = stage;
     programs.back().shared_bytes = options.shared_bytes + options.dynamic_bytes;
     programs.back().local_bytes = options.local_bytes;
+    for (const std::string& function : options.functions)
+      programs.push_back(
+          isa::parse(".program \"function\"\n.stage compute\n.registers 64\n\n" + function, "test"));
     Diagnostics diagnostics;
-    isa::verify(programs.back(), diagnostics);
+    for (const isa::Program& program : programs) isa::verify(program, diagnostics);
     diagnostics.throw_if_errors();
     image = link(programs);
     world.image = &image;
     world.memory = &memory;
     world.raygen = 0;
     world.constant_bank.resize(isa::kConstantBankBytes);
-    world.local_bytes = options.local_bytes;
+    world.local_bytes = options.local_bytes + options.stack_bytes;
     set_blocks(world, options.grid, options.block, options.shared_bytes, options.dynamic_bytes);
     num_words = options.buffer_words;
     buffer = memory.allocate("buffer", num_words * 4ull);
