@@ -19,14 +19,12 @@ CompiledStage compile_stage(std::vector<uint32_t> words, const StageSource& sour
                             const CompilerParams& compiler, Diagnostics& notes,
                             frontend::ShaderCache* cache) {
   words = frontend::specialize(std::move(words), source.specialization);
-  CompiledStage out;
-  out.reflection = frontend::reflect(words, source.name, source.entry);
   const auto validity = source.specialization.empty() ? source.validity : frontend::Validity::Unknown;
   frontend::CompiledModule module = frontend::compile_module(
       words, source.name, source.entry, backend_options(compiler), notes, cache, validity);
-  out.simplified = std::move(module.simplified);
-  out.program = std::move(module.program);
-  return out;
+  // The module is valid now, because it compiled.
+  return {frontend::reflect(words, source.name, source.entry), std::move(module.simplified),
+          std::move(module.program)};
 }
 
 LinkedShaders::LinkedShaders(std::vector<isa::Program> programs,

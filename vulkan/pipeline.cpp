@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/known_words.h"
 #include "isa/program.h"
 #include "isa/stage.h"
 #include "pipeline/software_traversal.h"
@@ -22,7 +22,7 @@ std::shared_ptr<const std::vector<uint32_t>> words_of(const VkShaderModuleCreate
   if (info.codeSize % sizeof(uint32_t) || info.codeSize < 5 * sizeof(uint32_t))
     throw Refusal(fmt::format("{} bytes are not a SPIR-V module", info.codeSize));
   std::vector<uint32_t> words(info.pCode, info.pCode + info.codeSize / sizeof(uint32_t));
-  return std::make_shared<const std::vector<uint32_t>>(frontend::with_known_positions(std::move(words)));
+  return std::make_shared<const std::vector<uint32_t>>(frontend::with_known_words(std::move(words)));
 }
 
 std::map<uint32_t, uint64_t> constants_of(const VkSpecializationInfo* info) {
@@ -108,7 +108,8 @@ void DestroyPipelineLayout(Device&, VkPipelineLayout layout) {
 VkResult CreateComputePipelines(Device& device, VkPipelineCache, uint32_t count,
                                 const VkComputePipelineCreateInfo* infos, VkPipeline* out) {
   std::fill_n(out, count, VkPipeline{});
-  for (uint32_t i = 0; i < count; ++i) out[i] = pipeline_of(device, infos[i]).release();
+  for (uint32_t i = 0; i < count; ++i)
+    answer_feedback(infos[i]), out[i] = pipeline_of(device, infos[i]).release();
   return VK_SUCCESS;
 }
 void DestroyPipeline(Device&, VkPipeline pipeline) {
@@ -155,11 +156,11 @@ const glint::pipeline::LinkedShaders& VkPipeline_T::compiled(VkDevice_T& device)
     device.messages().info(fmt::format("{}: messages call binding {} of set {} by the number {}", name,
                                        place.second, place.first, number));
   for (const vulkan::PipelineStage& each : stages) {
-    // Choice: the driver does not validate modules. The validation layer does, where the application asks
-    // for it.
+    // Choice: the driver validates modules, although Vulkan leaves that to a layer, because an invalid one
+    // would end the process.
     pipeline::CompiledStage made =
         pipeline::compile_stage(binding_numbers_.changed(*each.words),
-                                {each.name, each.entry_point, each.constants, frontend::Validity::Known},
+                                {each.name, each.entry_point, each.constants, frontend::Validity::Unknown},
                                 compiler, notes, &device.shader_cache);
     if (vulkan::flag_of(made.program.stage) != each.stage)
       throw UserError(fmt::format("entry point '{}' of {} is of stage {}, and the pipeline wants another",
@@ -167,6 +168,7 @@ const glint::pipeline::LinkedShaders& VkPipeline_T::compiled(VkDevice_T& device)
     programs.push_back(std::move(made.program));
     bindings.insert(bindings.end(), made.reflection.bindings.begin(), made.reflection.bindings.end());
   }
+  for (const std::string& note : notes.messages()) device.messages().warning(note);
   compiled_ = std::make_unique<const pipeline::LinkedShaders>(std::move(programs), bindings, gpu,
                                                               &device.shader_cache);
   return *compiled_;

@@ -1,6 +1,7 @@
 // Holds shader modules, pipeline layouts and pipelines, which are compiled when they first run.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "pipeline/binding_table.h"
 #include "pipeline/linked_shaders.h"
 #include "vulkan/binding_numbers.h"
+#include "vulkan/chain.h"
 #include "vulkan/descriptor_set.h"
 
 struct VkShaderModule_T {
@@ -34,6 +36,18 @@ struct PipelineStage {
 };
 // Returns what Vulkan calls the stage.
 VkShaderStageFlagBits flag_of(isa::Stage stage);
+
+// Says in the feedback that an application asked for with `info` that nothing is known: pipelines are
+// compiled when they run.
+template <class Info>
+void answer_feedback(const Info& info) {
+  const auto* asked = find_in_chain<VkPipelineCreationFeedbackCreateInfo>(
+      &info, VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO);
+  if (!asked) return;
+  *asked->pPipelineCreationFeedback = {};
+  std::fill_n(asked->pPipelineStageCreationFeedbacks, asked->pipelineStageCreationFeedbackCount,
+              VkPipelineCreationFeedback{});
+}
 
 // Throws Refusal for a stage without a module.
 PipelineStage stage_of(Device& device, const VkPipelineShaderStageCreateInfo& info);

@@ -116,7 +116,8 @@ VkResult CreateRayTracingPipelinesKHR(Device& device, VkDeferredOperationKHR ope
                                       uint32_t count, const VkRayTracingPipelineCreateInfoKHR* infos,
                                       VkPipeline* out) {
   std::fill_n(out, count, VkPipeline{});
-  for (uint32_t i = 0; i < count; ++i) out[i] = pipeline_of(device, infos[i]).release();
+  for (uint32_t i = 0; i < count; ++i)
+    answer_feedback(infos[i]), out[i] = pipeline_of(device, infos[i]).release();
   return operation ? VK_OPERATION_NOT_DEFERRED_KHR : VK_SUCCESS;
 }
 

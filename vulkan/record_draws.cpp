@@ -70,6 +70,10 @@ void CmdSetFrontFace(CommandBuffer&, VkFrontFace) {
 }
 void CmdSetLineWidth(CommandBuffer&, float) {
 }
+void CmdSetLogicOpEXT(CommandBuffer&, VkLogicOp) {
+}
+void CmdSetPatchControlPointsEXT(CommandBuffer&, uint32_t) {
+}
 void CmdSetPrimitiveRestartEnable(CommandBuffer&, VkBool32) {
 }
 void CmdSetPrimitiveTopology(CommandBuffer&, VkPrimitiveTopology) {

@@ -63,6 +63,7 @@ VkResult CreateGraphicsPipelines(Device& device, VkPipelineCache, uint32_t count
   if (!device.physical.instance.settings.is_universal)
     throw Refusal(VK_ERROR_FEATURE_NOT_PRESENT, "the device does no graphics");
   for (uint32_t i = 0; i < count; ++i) {
+    answer_feedback(infos[i]);
     auto made = std::make_unique<VkPipeline_T>();
     made->name = fmt::format("graphics pipeline {}", ++device.graphics_pipelines_made);
     if (infos[i].layout) made->layout = *infos[i].layout;

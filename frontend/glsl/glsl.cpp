@@ -18,7 +18,7 @@
 #include "frontend/glsl/newer_glsl.h"
 #include "frontend/glsl/token_count.h"
 #include "frontend/spirv/glslang_repairs.h"
-#include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/known_words.h"
 #include "frontend/spirv/limits.h"
 #include "frontend/spirv/spirv.h"
 
@@ -130,7 +130,7 @@ std::vector<uint32_t> generate(glslang::TShader& shader, EShLanguage language, E
   std::vector<uint32_t> words;
   spv::SpvBuildLogger log;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &log, &options);
-  words = with_known_positions(std::move(words));
+  words = with_known_words(std::move(words));
   refuse_unknown_capabilities(words, path);
   check_limits(words, path);
   std::string invalid = validate_made_spirv(words);

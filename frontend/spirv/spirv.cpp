@@ -15,7 +15,7 @@
 #include "base/regular_file.h"
 #include "frontend/compile.h"
 #include "frontend/deep_stack.h"
-#include "frontend/spirv/known_positions.h"
+#include "frontend/spirv/known_words.h"
 #include "frontend/spirv/limits.h"
 #include "frontend/spirv/newer_capabilities.h"
 #include "frontend/spirv/words.h"
@@ -168,7 +168,7 @@ std::vector<uint32_t> read_words(const std::string& path) {
   } else {
     std::memcpy(words.data(), bytes.data(), bytes.size());
   }
-  words = with_known_positions(std::move(words));
+  words = with_known_words(std::move(words));
   refuse_unknown_capabilities(words, path);
   check_limits(words, path, kDeepestValidated);
   const std::string invalid = validate_spirv(words);

@@ -38,6 +38,34 @@ TEST_CASE("a device gives the commands of an extension when it is enabled", "[po
   CHECK(with.load<PFN_vkVoidFunction>("vkCmdPushDescriptorSetKHR") != nullptr);
 }
 
+TEST_CASE("parts of the core are there under their older names, and dispatches ignore what they set") {
+  Client client({.extensions = {"VK_EXT_extended_dynamic_state", "VK_EXT_extended_dynamic_state2",
+                                "VK_EXT_pipeline_creation_feedback", "VK_EXT_separate_stencil_usage",
+                                "VK_EXT_tooling_info", "VK_KHR_draw_indirect_count",
+                                "VK_KHR_shader_draw_parameters", "VK_KHR_shader_terminate_invocation"}});
+  VkPipelineCreationFeedback whole{VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT, 7}, stage = whole;
+  const VkPipelineCreationFeedbackCreateInfo feedback{
+      VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO, nullptr, &whole, 1, &stage};
+  PipelineOptions options{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+  options.more_info = &feedback;
+  const MappedBuffer out = client.buffer(64);
+  const ComputePipeline pipeline = client.pipeline(
+      "#version 460\nlayout(binding = 0) buffer A { uint a; };\nvoid main() { a = 9; }\n", options);
+  // Nothing is known of how the pipeline was made, because it is compiled when it runs.
+  CHECK((whole.flags | stage.flags) == 0);
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{out.buffer, 0, VK_WHOLE_SIZE}});
+  REQUIRE(client.run([&](VkCommandBuffer commands) {
+    client.load<PFN_vkCmdSetCullModeEXT>("vkCmdSetCullModeEXT")(commands, VK_CULL_MODE_BACK_BIT);
+    client.load<PFN_vkCmdSetLogicOpEXT>("vkCmdSetLogicOpEXT")(commands, VK_LOGIC_OP_XOR);
+    client.load<PFN_vkCmdSetPatchControlPointsEXT>("vkCmdSetPatchControlPointsEXT")(commands, 3);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0,
+                            nullptr);
+    vkCmdDispatch(commands, 1, 1, 1);
+  }) == VK_SUCCESS);
+  CHECK(out.as<uint32_t>()[0] == 9);
+}
+
 TEST_CASE("a device that says Vulkan 1.3 has its required features", "[portable]") {
   const Client client;
   const Answers has(client.physical);

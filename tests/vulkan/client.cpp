@@ -244,8 +244,10 @@ VkShaderModule Client::module(const std::string& glsl, VkShaderStageFlagBits sta
         return {"client.comp", isa::Stage::Compute};
     }
   }();
-  const std::vector<uint32_t> words =
-      frontend::glsl_text_to_spirv(glsl, path.empty() ? name : path, own_stage, {});
+  return module(frontend::glsl_text_to_spirv(glsl, path.empty() ? name : path, own_stage, {}));
+}
+
+VkShaderModule Client::module(const std::vector<uint32_t>& words) {
   VkShaderModuleCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   info.codeSize = words.size() * sizeof(uint32_t), info.pCode = words.data();
@@ -278,12 +280,13 @@ ComputePipeline Client::pipeline(const std::string& glsl, const PipelineOptions&
   check(vkCreatePipelineLayout(device, &layout, nullptr, &out.layout), "vkCreatePipelineLayout");
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, info.layout = out.layout;
+  info.pNext = options.more_info;
   info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE | options.flags;
   info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                 nullptr,
                 0,
                 VK_SHADER_STAGE_COMPUTE_BIT,
-                module(glsl),
+                options.module ? options.module : module(glsl),
                 "main",
                 options.constants};
   check(vkCreateComputePipelines(device, nullptr, 1, &info, nullptr, &out.pipeline),

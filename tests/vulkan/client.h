@@ -46,7 +46,9 @@ struct PipelineOptions {
   uint32_t inline_bytes = 0;        // of each inline uniform block
   std::vector<uint32_t> numbers{};  // of the bindings; empty: from 0 on
   VkPipelineCreateFlags flags = 0;
-  std::vector<uint32_t> counts{};  // descriptors of the bindings; empty: one each
+  std::vector<uint32_t> counts{};   // descriptors of the bindings; empty: one each
+  VkShaderModule module = nullptr;  // instead of the text
+  const void* more_info = nullptr;  // pNext of the pipeline
 };
 
 // Holds an instance with a messenger, a device and a command pool. Everything that it made ends with it.
@@ -81,6 +83,7 @@ class Client {
   // `path` names the text in messages, and its includes lie beside it.
   VkShaderModule module(const std::string& glsl, VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT,
                         const std::string& path = {});
+  VkShaderModule module(const std::vector<uint32_t>& words);
   ComputePipeline pipeline(const std::string& glsl, const PipelineOptions& options);
   // Returns a set in which binding i has buffer i.
   VkDescriptorSet set(VkDescriptorSetLayout layout, const std::vector<VkDescriptorBufferInfo>& buffers,

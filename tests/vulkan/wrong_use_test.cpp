@@ -75,6 +75,65 @@ TEST_CASE("a shader that does not end loses the device and says where") {
   CHECK(vkQueueWaitIdle(client.queue) == VK_ERROR_DEVICE_LOST);
 }
 
+// Returns a module whose entry point does nothing. `returned` is the type of what the entry point returns.
+std::vector<uint32_t> empty_module(uint32_t returned) {
+  constexpr uint32_t kVoid = 2, kBound = 5, kMain = 0x6e69616d;
+  return {0x07230203,
+          0x10000,
+          0,
+          kBound,
+          0,  // the header
+          2 << 16 | 17,
+          1,  // OpCapability Shader
+          3 << 16 | 14,
+          0,
+          1,  // OpMemoryModel Logical GLSL450
+          5 << 16 | 15,
+          5,
+          1,
+          kMain,
+          0,  // OpEntryPoint GLCompute %1 "main"
+          6 << 16 | 16,
+          1,
+          17,
+          1,
+          1,
+          1,  // OpExecutionMode %1 LocalSize 1 1 1
+          2 << 16 | 19,
+          kVoid,  // %2 = OpTypeVoid
+          3 << 16 | 33,
+          3,
+          kVoid,  // %3 = OpTypeFunction %2
+          5 << 16 | 54,
+          returned,
+          1,
+          0,
+          3,
+          2 << 16 | 248,
+          4,  // %1 = OpFunction, %4 = OpLabel
+          1 << 16 | 253,
+          1 << 16 | 56};  // OpReturn, OpFunctionEnd
+}
+
+TEST_CASE("a shader that is no valid SPIR-V is refused when it runs, with what is wrong in it") {
+  const auto run = [](Client& client, const std::vector<uint32_t>& words) {
+    PipelineOptions options;
+    options.module = client.module(words);
+    return client.dispatch(client.pipeline({}, options), nullptr, {1, 1, 1});
+  };
+  Client valid;
+  CHECK(run(valid, empty_module(2)) == VK_SUCCESS);
+  CHECK(joined(valid.messages).empty());
+  Client unknown_type;
+  CHECK(run(unknown_type, empty_module(77)) < VK_SUCCESS);
+  CHECK_THAT(joined(unknown_type.messages), Catch::Contains("shader 1: error: invalid SPIR-V"));
+  Client cut_off;
+  std::vector<uint32_t> half = empty_module(2);
+  half.resize(half.size() / 2);
+  CHECK(run(cut_off, half) < VK_SUCCESS);
+  CHECK_THAT(joined(cut_off.messages), Catch::Contains("shader 1: error: invalid SPIR-V"));
+}
+
 TEST_CASE("a copy that leaves its buffer fails the recording") {
   Client client;
   const MappedBuffer from = client.buffer(64), to = client.buffer(64);

@@ -252,6 +252,19 @@ TEST_CASE("words that are not a valid module are refused") {
   CHECK_THROWS_AS(Module::parse({1, 2, 3, 4, 5, 6}, "x"), UserError);
 }
 
+TEST_CASE("a module whose source is in a language younger than SPIRV-Tools is read") {
+  const lab::Folder folder;
+  std::vector<uint32_t> words = glsl_to_spirv(folder.write("s.comp", "#version 460\nvoid main() {}\n"), {});
+  for (const uint32_t language : {5, 11, 13}) {
+    for (size_t i = 5; i < words.size(); i += words[i] >> 16)
+      if (spv::Op(words[i] & 0xffff) == spv::Op::OpSource) words[i + 1] = language;
+    const std::string bytes(reinterpret_cast<const char*>(words.data()), words.size() * 4);
+    const auto known = read_spirv(folder.write("s.spv", bytes));
+    CHECK(count_ops(known, spv::Op::OpSource) == 1);
+    CHECK((known == words) == (language == 5));
+  }
+}
+
 TEST_CASE("an extension that the optimiser does not know does not stop it") {
   // Without help, SPV_KHR_ray_cull_mask makes most passes skip the module silently.
   const std::string body =
