@@ -21,6 +21,11 @@ bool exists(const Device& device, const void* resource) {
   return resource && device.bindable.contains(resource);
 }
 
+// Returns whether the buffer of a descriptor has memory, which the application may have freed.
+bool has_memory(const Device& device, VkBuffer buffer) {
+  return exists(device, buffer) && device.memory.find(buffer->address, buffer->bytes);
+}
+
 // Returns whether a descriptor stands for nothing on purpose.
 bool is_null(const Device& device, const Descriptor& descriptor) {
   return descriptor.is_null && device.has("nullDescriptor");
@@ -57,7 +62,7 @@ pipeline::BufferRange buffer_range(Device& device, const Place& place, uint32_t 
   if (descriptor.address)
     return {device.parts.open(device.memory, descriptor.address, descriptor.range), descriptor.range};
   if (is_null(device, descriptor)) return pipeline::LaunchBuilder::null();
-  if (!exists(device, descriptor.buffer)) return unbound;
+  if (!has_memory(device, descriptor.buffer)) return unbound;
   const VkDeviceSize dynamic =
       place.layout.is_dynamic() ? place.set.dynamic_offsets.at(place.layout.first_dynamic + element) : 0;
   const VkDeviceSize offset = descriptor.offset + dynamic;
@@ -104,7 +109,7 @@ exec::ImageView image_of(Device& device, const Descriptor& descriptor, pipeline:
   if (descriptor.address)
     return row_of_texels("texels at an address", texel_format_of(descriptor.format), descriptor.address,
                          descriptor.range);
-  if (exists(device, descriptor.texels) && exists(device, descriptor.texels->buffer))
+  if (exists(device, descriptor.texels) && has_memory(device, descriptor.texels->buffer))
     return texels_of(device, *descriptor.texels);
   if (is_null(device, descriptor)) return pipeline::null_image();
   if (!exists(device, descriptor.view)) return pipeline::unbound_image(number);

@@ -65,8 +65,10 @@ void check_part(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize range) {
 HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range) {
   if (!buffer->address) throw Refusal(fmt::format("{} is not bound to memory", buffer->name));
   check_part(*buffer, offset, range);
-  return {device.memory.data(buffer->memory->backing) + buffer->offset + offset,
-          range == VK_WHOLE_SIZE ? buffer->bytes - offset : range};
+  const VkDeviceSize bytes = range == VK_WHOLE_SIZE ? buffer->bytes - offset : range;
+  std::byte* const data = device.memory.find(buffer->address, buffer->bytes);
+  if (!data) throw Refusal(fmt::format("the memory of {} was freed", buffer->name));
+  return {data + offset, bytes};
 }
 
 Address address_of_part(Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize bytes) {

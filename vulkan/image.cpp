@@ -120,9 +120,10 @@ exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& ran
 }
 
 std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at) {
-  if (!image.memory) throw Refusal(fmt::format("{} is not bound to memory", image.whole.name));
-  return device.memory.data(image.memory->backing) + image.offset +
-         (image.whole.address_of(at) - image.whole.base);
+  if (!image.whole.base) throw Refusal(fmt::format("{} is not bound to memory", image.whole.name));
+  std::byte* const texel = device.memory.find(image.whole.address_of(at), image.whole.texel_bytes());
+  if (!texel) throw Refusal(fmt::format("the memory of {} was freed", image.whole.name));
+  return texel;
 }
 
 VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out) {
@@ -137,17 +138,14 @@ VkResult CreateImage(Device& device, const VkImageCreateInfo* info, VkImage* out
 }
 void DestroyImage(Device& device, VkImage image) {
   if (!image) return;
-  if (image->memory) device.memory.free(image->whole.base);
+  if (image->whole.base) device.memory.free(image->whole.base);
   delete image;
 }
 
 VkResult BindImageMemory(Device& device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset) {
   image->whole.base = bind_window(device, image->whole.name, bytes_of(*image), memory, offset);
-  image->memory = memory, image->offset = offset;
-  if (Image* const stencil = image->stencil.get()) {
+  if (Image* const stencil = image->stencil.get())
     stencil->whole.base = image->whole.base + stencil_offset(*image);
-    stencil->memory = memory, stencil->offset = offset + stencil_offset(*image);
-  }
   return VK_SUCCESS;
 }
 VkResult BindImageMemory2(Device& device, uint32_t count, const VkBindImageMemoryInfo* infos) {

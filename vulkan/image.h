@@ -17,8 +17,6 @@ struct VkImage_T {
   // All levels and layers, in which samples count as layers. Its base is 0 before memory is bound.
   glint::exec::ImageView whole;
   VkImageType type = VK_IMAGE_TYPE_2D;
-  VkDeviceMemory memory = nullptr;
-  VkDeviceSize offset = 0;  // in the memory
   // Depth has 24 bits in buffers. In the image it is a float, which can tell all of them apart.
   bool has_24_bits = false;
   // The stencil of an image that has depth and stencil. It lies behind the depth in the same window.
@@ -95,7 +93,7 @@ exec::Words cleared_words(exec::TexelFormat format, const VkClearDepthStencilVal
 // Refusal when the image does not have them.
 exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& range);
 
-// Returns the host's bytes of a texel. Throws Refusal when the image has no memory.
+// Returns the host's bytes of a texel. Throws Refusal when the image has no memory, or its memory was freed.
 std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at);
 
 // Calls `row(level's texel index)` for each row of texels of a range.

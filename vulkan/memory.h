@@ -57,7 +57,7 @@ Address bind_window(Device& device, const std::string& name, VkDeviceSize bytes,
 // Throws Refusal when `range` bytes from `offset` on leave a buffer.
 void check_part(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize range);
 // Returns the bytes of `range` from `offset` on; VK_WHOLE_SIZE stands for all that follow. Throws Refusal
-// when the buffer has no memory or the range leaves it.
+// when the buffer has no memory, its memory was freed or the range leaves it.
 HostRange bytes_of(const Device& device, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize range);
 
 // Keeps windows on parts of buffers. Descriptors show parts, and an access past the part is found.

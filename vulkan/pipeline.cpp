@@ -79,6 +79,11 @@ PipelineStage stage_of(Device& device, const VkPipelineShaderStageCreateInfo& in
   } else {
     throw Refusal("a pipeline needs a shader module");
   }
+  const auto* subgroups = find_in_chain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(
+      &info, VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO);
+  if (subgroups && subgroups->requiredSubgroupSize != uint32_t(kLanes))
+    throw Refusal(fmt::format("a stage asks for subgroups of {} threads, and the device's have {}",
+                              subgroups->requiredSubgroupSize, kLanes));
   out.entry_point = info.pName;
   out.constants = constants_of(info.pSpecializationInfo);
   return out;

@@ -9,8 +9,12 @@
 #include <dlfcn.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <iterator>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <unistd.h>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -80,6 +84,23 @@ bool is_universal(const std::string& text) {
   return text == "universal";
 }
 
+// Refuses a variable that begins as the driver's do and that nobody reads, because its name is wrong.
+void check_names() {
+  const std::vector<std::string> known = {"GLINT_CONFIG",   "GLINT_OBSERVE",    "GLINT_ON_FAULT",
+                                          "GLINT_OUT",      "GLINT_PROGRESS",   "GLINT_SET",
+                                          "GLINT_STATS",    "GLINT_THREADS",    "GLINT_TIMING",
+                                          "GLINT_VK_QUEUE", "GLINT_VK_PRESENT", "GLINT_VK_SAVE"};
+  for (char** each = environ; *each; ++each) {
+    const std::string_view entry(*each);
+    const std::string name(entry.substr(0, entry.find('=')));
+    if (!name.starts_with("GLINT_VK_") || std::ranges::count(known, name)) continue;
+    const std::string meant = nearest(name, known);
+    throw UserError(fmt::format("{} is no variable of the driver; {}", name,
+                                meant.empty() ? fmt::format("it has {}", fmt::join(known, ", "))
+                                              : fmt::format("did you mean {}?", meant)));
+  }
+}
+
 // Returns what Glint was installed with, which lies beside this library.
 setup::Resources resources() {
   Dl_info library{};
@@ -102,6 +123,7 @@ void read_machine(Settings& settings) {
 }  // namespace
 
 Settings settings_of_environment() {
+  check_names();
   Settings out;
   read_machine(out);
   out.timing_text = value_of("GLINT_TIMING");

@@ -283,7 +283,7 @@ ComputePipeline Client::pipeline(const std::string& glsl, const PipelineOptions&
   info.pNext = options.more_info;
   info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE | options.flags;
   info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                nullptr,
+                options.more_stage_info,
                 0,
                 VK_SHADER_STAGE_COMPUTE_BIT,
                 options.module ? options.module : module(glsl),

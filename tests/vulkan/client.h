@@ -48,7 +48,7 @@ struct PipelineOptions {
   VkPipelineCreateFlags flags = 0;
   std::vector<uint32_t> counts{};   // descriptors of the bindings; empty: one each
   VkShaderModule module = nullptr;  // instead of the text
-  const void* more_info = nullptr;  // pNext of the pipeline
+  const void *more_info = nullptr, *more_stage_info = nullptr;  // pNext of the pipeline and of its stage
 };
 
 // Holds an instance with a messenger, a device and a command pool. Everything that it made ends with it.

@@ -33,6 +33,14 @@ class VulkanInfo(VulkanTest):
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("GLINT_VK_QUEUE is 'all': it has to be 'compute' or 'universal'", result.stderr)
 
+    def test_a_variable_of_a_wrong_name_is_refused(self):
+        for name, meant in (("GLINT_VK_TIMING", "did you mean GLINT_TIMING?"), ("GLINT_VK_PRESENTS", "did you mean GLINT_VK_PRESENT?"),
+                            ("GLINT_VK_THIRTY_TWO", "it has GLINT_CONFIG, ")):
+            with self.subTest(name):
+                result = self.run_on_glint("vulkaninfo", **{name: "all"})
+                self.assertNotEqual(result.returncode, 0)
+                self.assertIn(f"{name} is no variable of the driver; {meant}", result.stderr)
+
     def test_the_library_shows_the_loader_s_functions_and_no_others(self):
         library = json.loads(MANIFEST.read_text())["ICD"]["library_path"]
         listed = self.run_on_glint("nm", "-D", "--defined-only", library)

@@ -134,6 +134,18 @@ TEST_CASE("a shader that is no valid SPIR-V is refused when it runs, with what i
   CHECK_THAT(joined(cut_off.messages), Catch::Contains("shader 1: error: invalid SPIR-V"));
 }
 
+TEST_CASE("a stage that asks for another size of subgroups than the device's is refused") {
+  Client client;
+  VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{
+      VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO, nullptr, 32};
+  PipelineOptions options;
+  options.more_stage_info = &size;
+  CHECK_NOTHROW(client.pipeline(kHead + "void main() {}\n", options));
+  size.requiredSubgroupSize = 8;
+  CHECK_THROWS(client.pipeline(kHead + "void main() {}\n", options));
+  CHECK_THAT(joined(client.messages), Catch::Contains("subgroups of 8 threads, and the device's have 32"));
+}
+
 TEST_CASE("a copy that leaves its buffer fails the recording") {
   Client client;
   const MappedBuffer from = client.buffer(64), to = client.buffer(64);
@@ -146,6 +158,35 @@ TEST_CASE("a copy that leaves its buffer fails the recording") {
   CHECK(end == VK_ERROR_VALIDATION_FAILED_EXT);
   CHECK_THAT(joined(client.messages),
              Catch::Contains("vkCmdCopyBuffer: 64 bytes from byte 32 on leave buffer 1"));
+}
+
+TEST_CASE("a command on a buffer whose memory was freed is refused, and names the buffer") {
+  Client client;
+  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  info.size = 256, info.usage = Client::kAllUses;
+  VkBuffer buffer = nullptr;
+  check(vkCreateBuffer(client.device, &info, nullptr, &buffer), "vkCreateBuffer");
+  const VkMemoryAllocateInfo wanted{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, info.size, 0};
+  VkDeviceMemory memory = nullptr;
+  check(vkAllocateMemory(client.device, &wanted, nullptr, &memory), "vkAllocateMemory");
+  check(vkBindBufferMemory(client.device, buffer, memory, 0), "vkBindBufferMemory");
+  VkCommandBuffer commands = nullptr;
+  REQUIRE(client.record(commands, [&](VkCommandBuffer to) {
+    vkCmdFillBuffer(to, buffer, 0, VK_WHOLE_SIZE, 1);
+  }) == VK_SUCCESS);
+  vkFreeMemory(client.device, memory, nullptr);
+
+  // A shader finds nothing bound.
+  const ComputePipeline pipeline = client.pipeline(kHead + "void main() { a[0] = 3; }\n", {{kStorage}});
+  const VkDescriptorSet set = client.set(pipeline.set_layout, {{buffer, 0, VK_WHOLE_SIZE}});
+  CHECK(client.dispatch(pipeline, set, {1, 1, 1}) == VK_SUCCESS);
+  CHECK_THAT(joined(client.messages), Catch::Contains("set 0 binding 0, to which nothing is bound"));
+
+  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+  submit.commandBufferCount = 1, submit.pCommandBuffers = &commands;
+  CHECK(vkQueueSubmit(client.queue, 1, &submit, nullptr) < VK_SUCCESS);
+  CHECK_THAT(joined(client.messages), Catch::Contains("the memory of buffer 1 was freed"));
+  vkDestroyBuffer(client.device, buffer, nullptr);
 }
 
 TEST_CASE("more memory than the heap has is refused, and the rest stays usable") {
