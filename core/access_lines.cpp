@@ -66,6 +66,11 @@ void AccessLines::collect_memory(MemoryAccess& access, const exec::WarpContext& 
                                                               : mem::Traffic::ShaderGlobal;
   access.atomic = is_atomic;
   if (issued.row->effect == Effect::Mbarrier) return collect_mbarriers(access, warp.regs.access);
+  if (const uint32_t matrices = issued.row->memory.matrices; matrices > 0) {
+    access.is_of_matrices = true;
+    access.passes = matrix_passes(addresses, executor_.lanes_in(Space::Shared), matrices, bytes);
+    return;
+  }
   if (const LaneMask lanes = executor_.lanes_in(Space::Shared))
     access.passes = is_atomic ? bank_passes(addresses, lanes, bytes, !access.merges_lanes)
                               : shared_passes(is_copy ? executor_.copied_to() : addresses, lanes, bytes,

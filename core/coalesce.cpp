@@ -161,4 +161,11 @@ uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes
   return passes;
 }
 
+uint32_t matrix_passes(const isa::Access& access, LaneMask lanes, uint32_t matrices, uint32_t bytes) {
+  uint32_t passes = 0;
+  for (uint32_t m = 0; m < matrices; ++m)
+    passes += bank_passes(access, lanes & LaneMask{0xff} << 8 * m, bytes, false);
+  return passes;
+}
+
 }  // namespace glint::core

@@ -142,4 +142,9 @@ uint32_t bank_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, 
 // address. This is what an H100 takes for 133 patterns of addresses, to the pass (bench/probes/shared.csv).
 uint32_t shared_passes(const isa::Access& access, LaneMask lanes, uint32_t bytes, bool is_store);
 
+// Does the same for an ldmatrix or a stmatrix: each matrix takes the bank_passes() of its eight rows. An H200
+// takes 1.04, 2.03 and 4.03 cycles for one, two and four matrices, and 32.04 for four whose rows lie 128
+// bytes apart (bench/probes/tensor_h200.csv).
+uint32_t matrix_passes(const isa::Access& access, LaneMask lanes, uint32_t matrices, uint32_t bytes);
+
 }  // namespace glint::core

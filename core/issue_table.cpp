@@ -129,6 +129,8 @@ Pipe pipe_of(Unit unit) {
     case Unit::IntDiv:
     case Unit::FpDiv:
       return Pipe::Sfu;
+    case Unit::Tensor:
+      return Pipe::Tensor;
     case Unit::Const:
       return Pipe::Const;
     case Unit::Barrier:

@@ -18,7 +18,7 @@ namespace glint::core {
 // Names the pipes. Model: each scheduler has one pipe of each kind, as a Turing sub-core has. Int, move and
 // predicate share the integer pipe, and divisions run on the special-function pipe. Memory is the door to the
 // units that all schedulers share (load-store, texture); a queue (core/lsu.h) limits it, not an interval.
-enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Const, Branch, RtUnit, Memory, Count };
+enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Tensor, Const, Branch, RtUnit, Memory, Count };
 inline constexpr int kNumPipes = int(Pipe::Count);
 Pipe pipe_of(isa::Unit unit);
 

@@ -32,6 +32,7 @@ struct MemoryAccess {
   bool atomic = false;        // an atomic that shared memory does, if the word is there
   bool merges_lanes = false;  // the lanes of an atomic that meet in a word of shared memory take one turn
   isa::AtomicKind atomic_kind = isa::AtomicKind::Integer;
+  bool is_of_matrices = false;   // an ldmatrix or a stmatrix
   uint32_t bank_turns = 1;       // words of the fullest bank of the L1's array, where banks count
   uint32_t passes = 0;           // passes of shared memory; a generic access may go there and to lines
   uint32_t num_table_lines = 0;  // the first lines, which hold the candidates that the called shaders see

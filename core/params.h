@@ -52,6 +52,10 @@ struct Units {
   UnitParams constant{26, 2};  // constant-cache hit of a T4: 26 cycles (Jia et al. 2019, table 3.1)
   UnitParams tex{180, 4};      // 200 together with an L1 hit
   UnitParams shuffle{26, 4};   // shfl.bfly of an H200: 26 cycles, and a warp in 4 cycles per sub-core
+  // Turing has two tensor cores per sub-core, each with 64 products of halves per cycle (Turing whitepaper,
+  // 2018), so that an m16n8k16 takes 16 cycles. Guess: the latency is that interval and as much again.
+  // Model: all shapes and types take the times of m16n8k16 where no op has a time of its own.
+  UnitParams tensor{32, 16};
   UnitParams branch{4, 2};
   UnitParams barrier{13, 2};  // bar.sync of an H200: 12.75 cycles, and 2 per warp
   UnitParams rt_unit{4, 4};   // time to hand over rays, counted when they have come back
@@ -71,6 +75,8 @@ struct Units {
         section(&Units::predicate, "predicate",
                 "Times of comparisons and predicate logic, which run on the integer pipe."),
         section(&Units::shuffle, "shuffle", "Times of shuffles, votes, matches and reductions across lanes."),
+        section(&Units::tensor, "tensor",
+                "Times of products of matrices (mma), which have a pipe of their own."),
         section(&Units::lsu, "lsu",
                 "Times of address generation. The latency lasts up to the L1, and the interval is per "
                 "scheduler."),
@@ -87,8 +93,8 @@ struct Units {
   }
   // Returns the units in the order of isa::Unit.
   std::array<UnitParams, size_t(isa::Unit::Count)> by_unit() const {
-    return std::array{integer,   int_div, fp32, fp_div,   fp64, fp64_div, fp16,    sfu,    move,
-                      predicate, shuffle, lsu,  constant, tex,  branch,   barrier, rt_unit};
+    return std::array{integer,   int_div, fp32,   fp_div, fp64,     fp64_div, fp16,   sfu,     move,
+                      predicate, shuffle, tensor, lsu,    constant, tex,      branch, barrier, rt_unit};
   }
 };
 

@@ -51,6 +51,8 @@ bool MemoryOps::run(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& 
   bool ok = true;
   if (row.effect == Effect::Copy) {
     ok = copy(warp, inst, row, exec);
+  } else if (row.memory.matrices > 0) {
+    ok = move_matrices(warp, inst, row, exec);
   } else if (row.memory.space != Space::Generic) {
     lanes_in_[size_t(row.memory.space)] = exec;
     ok = access(warp, inst, row, row.memory.space, exec);

@@ -70,6 +70,9 @@ class MemoryOps {
   bool modify(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, isa::Space space,
               LaneMask lanes);
 
+  // This function is in matrix_accesses.cpp.
+  bool move_matrices(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
+
   // These are in async_copies.cpp.
   bool copy(WarpContext& warp, const isa::Inst& inst, const isa::OpRow& row, LaneMask lanes);
   std::byte* copy_target(const WarpContext& warp, int lane, uint32_t bytes, bool& ok);

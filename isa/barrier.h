@@ -16,10 +16,12 @@ enum class BarrierKind : uint16_t { Sync, Arrive, Count, And, Or };
 // Names the scopes of Effect::Fence: all who see the writes after the fence also see the writes before it.
 enum class FenceScope : uint16_t { Warp, Block, Gpu, System };
 
-// Returns whether lanes come together for the op whose last operand is a mask of these lanes.
+// Returns whether lanes come together for the op whose last operand is a mask of these lanes. Ops that are
+// .aligned have no mask: a program has all lanes execute them together.
 inline bool has_lane_mask(const OpRow& row) {
   return (row.effect == Effect::None || row.effect == Effect::Fence) &&
-         row.name.find(".sync") != std::string_view::npos;
+         row.name.find(".sync") != std::string_view::npos &&
+         row.name.find(".aligned") == std::string_view::npos;
 }
 
 }  // namespace glint::isa

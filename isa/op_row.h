@@ -95,6 +95,10 @@ struct Memory {
   uint8_t bytes = 4;
   uint8_t count = 1;
   bool sign_extend = false;
+  // Of ldmatrix and stmatrix: the matrices of 8x8 half words that the warp accesses. Lane 8m + r gives the
+  // address of row r of matrix m, and all lanes share out the rows (exec/matrix_accesses.cpp).
+  uint8_t matrices = 0;
+  bool is_transposed = false;
 };
 
 struct OpRow;
@@ -141,6 +145,12 @@ struct OpRow {
   std::string_view doc;        // one sentence, for docs/isa.md and `glint isa add.s32`
   Examples examples;           // examples are documentation and test at once
 };
+
+// Returns whether what the op computes depends on the registers of other lanes, or on which lanes execute.
+// Such an op may not be given to fewer lanes, nor to more.
+constexpr bool depends_on_lanes(const OpRow& row) {
+  return row.unit == Unit::Shuffle || row.unit == Unit::Tensor || row.memory.matrices > 0;
+}
 
 // Returns the whole table, sorted by family and then by declaration. Inst::op is the index of the row. The
 // handlers are those of the widest SIMD path that this machine has; every path gives identical bits.

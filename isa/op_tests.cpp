@@ -68,6 +68,7 @@ static_assert(
 std::string_view test_of(const OpRow& row) {
   // A value op without a source has no example: what activemask gives is a matter of control flow.
   if (row.effect == Effect::None && row.examples.count == 0) return "tests/ops/control.cpp";
+  if (row.memory.matrices > 0) return "tests/ops/matrix_access.cpp";
   return kTests[size_t(row.effect)].file;
 }
 

@@ -22,6 +22,7 @@ enum class Unit : uint8_t {
   Move,
   Predicate,
   Shuffle,  // ops whose lanes read each other: shfl, vote, match, redux
+  Tensor,   // products of matrices that a warp holds: mma
   Lsu,
   Const,
   Tex,
@@ -49,10 +50,10 @@ inline constexpr UnitRow kUnits[] = {
     {Unit::Fp64, "fp64", 16},       {Unit::Fp64Div, "fp64_div", 40},
     {Unit::Fp16, "fp16", 4},        {Unit::Sfu, "sfu", 16},
     {Unit::Move, "move", 4},        {Unit::Predicate, "predicate", 4},
-    {Unit::Shuffle, "shuffle", 24}, {Unit::Lsu, "lsu", 28},
-    {Unit::Const, "const", 8},      {Unit::Tex, "tex", 80},
-    {Unit::Branch, "branch", 1},    {Unit::Barrier, "barrier", 1},
-    {Unit::RtUnit, "rt_unit", 1},
+    {Unit::Shuffle, "shuffle", 24}, {Unit::Tensor, "tensor", 24},
+    {Unit::Lsu, "lsu", 28},         {Unit::Const, "const", 8},
+    {Unit::Tex, "tex", 80},         {Unit::Branch, "branch", 1},
+    {Unit::Barrier, "barrier", 1},  {Unit::RtUnit, "rt_unit", 1},
 };
 static_assert(std::size(kUnits) == size_t(Unit::Count), "every unit has a row");
 static_assert(

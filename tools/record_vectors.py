@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs each form of a manifest on fresh inputs and writes manifest.json, inputs.bin and outputs.bin.
 
-The script needs a CUDA GPU, numpy and cupy, which nothing else in Glint needs. A form is PTX text with the operands A, B, C, E
+The script needs a CUDA GPU, numpy and cupy. A form is PTX text with the operands A, B, C, E
 (inputs), D0, D1 (outputs), TMP and SHM (8 bytes of global and shared memory per lane) and PP (a predicate). The inputs of
 a form are drawn from the inputs of the given manifest, permuted, and from random bits; masks of lanes stay as they are.
 To compare Glint with the results, compress them with zstd and point GLINT_PTX_GOLDEN_DIR at the folder.

@@ -123,6 +123,25 @@ constexpr OpTime kTimes[] = {
     {"cvt.f32.f16", 4, 1, Unit::Fp32},
     {"cvt.f64.f32", 18, 8.5, Unit::Sfu},
     {"cvt.rn.f32.f64", 18, 8.5, Unit::Sfu},
+    // Products of matrices have a pipe of their own (bench/probes/tensor_h200.csv). What is not named here
+    // has
+    // the time of the unit: m16n8k16 of f16 and bf16, m16n8k32 of bytes, m16n8k256 of bits.
+    {"mma.sync.aligned.m16n8k8.*tf32.f32", 24, 6},
+    {"mma.sync.aligned.m16n8k8.*", 17, 4},
+    {"mma.sync.aligned.m16n8k4.*", 17, 4},
+    {"mma.sync.aligned.m16n8k16.*s32", 17, 4},
+    {"mma.sync.aligned.m8n8k16.*", 14, 4},
+    {"mma.sync.aligned.m8n8k4.*", 26, 16},
+    {"mma.sync.aligned.m8n8k128.*and.popc", 14, 4},
+    {"mma.sync.aligned.m16n8k128.*and.popc", 17, 4},
+    // The part has no products of 4 bits, and of bits only those of `and`: its assembler calls functions.
+    {"mma.sync.aligned.m8n8k32.*", 169, 107, Unit::Count, false, 66, true},
+    {"mma.sync.aligned.m16n8k32.*4.s32", 187, 127, Unit::Count, false, 72, true},
+    {"mma.sync.aligned.m16n8k64.*", 536, 328, Unit::Count, false, 208, true},
+    {"mma.sync.aligned.m8n8k128.*xor.popc", 91, 27, Unit::Count, false, 9, true},
+    {"mma.sync.aligned.m16n8k128.*xor.popc", 99, 35, Unit::Count, false, 14, true},
+    {"mma.sync.aligned.m16n8k256.*xor.popc", 115, 43, Unit::Count, false, 16, true},
+    {"movmatrix.*", 24, 4},
     // These work across lanes.
     {"vote.*", 13, 2, Unit::Int},
     {"match.*", 28, 8},

@@ -82,9 +82,8 @@ class Guarding {
     const VirtualInst *first = block_->code.data(), *last = first + block_->code.size();
     if (source < first || source >= last || source >= &selection) return nullptr;
     const isa::OpRow& row = row_of(*source);
-    if (gone_[size_t(source - first)] || row.name == "activemask.b32") return nullptr;
-    if (row.unit == isa::Unit::Lsu || row.unit == isa::Unit::Shuffle || ops_.is_move(source->op))
-      return nullptr;
+    if (gone_[size_t(source - first)] || isa::depends_on_lanes(row)) return nullptr;
+    if (row.unit == isa::Unit::Lsu || ops_.is_move(source->op)) return nullptr;
     int destinations = 0;
     bool is_same = true;
     for_each_slot(row, [&](size_t slot, isa::OperandKind kind) {

@@ -37,7 +37,7 @@ class Sameness {
   bool computes_same(const VirtualInst& source, int depth) {
     const bool is_parameter = row_of(source).memory.space == isa::Space::Param;
     if (!is_pure(source) || (!is_parameter && row_of(source).effect != isa::Effect::None)) return false;
-    if (row_of(source).unit == isa::Unit::Shuffle || row_of(source).name == "activemask.b32") return false;
+    if (isa::depends_on_lanes(row_of(source))) return false;
     bool all = true;
     for_each_slot(row_of(source), [&](size_t slot, isa::OperandKind kind) {
       if (!isa::is_destination(kind)) all &= holds(source.operands[slot], depth + 1);

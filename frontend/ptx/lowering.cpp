@@ -243,7 +243,9 @@ void KernelLowering::lower(const Instruction& inst) {
     return no_support(inst.position,
                       fmt::format("not supported: '{}', which belongs to {}", joined(inst.words), part));
   if (options_.check_types) check_types(inst);
-  if (lower_control(inst) || lower_special(inst) || lower_async(inst) || lower_video(inst)) return;
+  if (lower_control(inst) || lower_special(inst) || lower_async(inst) || lower_video(inst) ||
+      lower_tensor(inst))
+    return;
   lower_generic(inst);
 }
 

@@ -48,7 +48,8 @@ struct Scope {
   bool is_function = false;                // names not found here are looked up in the module
 };
 
-struct VideoForm;  // what the words of a video instruction ask for (lowering_video.cpp)
+struct VideoForm;       // what the words of a video instruction ask for (lowering_video.cpp)
+struct FragmentAccess;  // where the parts of a wmma fragment lie in memory (lowering_fragments.cpp)
 
 // Holds a move of a result to a register that is wider or narrower than the row's.
 struct LateMove {
@@ -143,6 +144,32 @@ class KernelLowering {
   bool lower_video(const Instruction& inst);
   VirtualOperand video_result(const Instruction& inst, const VideoForm& form, VirtualOperand third);
   void finish_video(const Instruction& inst, VirtualOperand result, VirtualOperand third, bool adds);
+
+  // These functions are in lowering_tensor.cpp.
+  bool lower_tensor(const Instruction& inst);
+  std::vector<VirtualOperand> registers_to(const Operand& o, isa::OperandKind kind);
+  std::vector<VirtualOperand> registers_from(const Operand& o, isa::OperandKind kind);
+  bool has_registers(const Instruction& inst, std::vector<size_t> wanted);
+  void multiply(int row, const std::vector<VirtualOperand>& d, const std::vector<VirtualOperand>& a,
+                const std::vector<VirtualOperand>& b, const std::vector<VirtualOperand>& c);
+  void lower_product(const Instruction& inst);
+  void lower_fp8_product(const Instruction& inst);
+  void lower_double_product(const Instruction& inst);
+  void lower_matrix_access(const Instruction& inst);
+
+  // These functions are in lowering_fragments.cpp.
+  void lower_fragments(const Instruction& inst);
+  void lower_fragment_product(const Instruction& inst);
+  void lower_fragment_access(const Instruction& inst);
+  std::vector<VirtualOperand> singles_of(const std::vector<VirtualOperand>& pairs);
+  std::vector<VirtualOperand> halves_of(const std::vector<VirtualOperand>& singles);
+  void access_whole_words(const FragmentAccess& access);
+  void access_transposed(const FragmentAccess& access);
+  void access_elements(const FragmentAccess& access);
+  void load_by_rows(const FragmentAccess& access);
+  template <class Visit>
+  void for_each_place(const FragmentAccess& access, bool across, uint32_t elements, Visit&& visit);
+  VirtualOperand line_address(const FragmentAccess& access, VirtualOperand index, VirtualOperand more);
 
   // These functions are in lowering_async.cpp.
   bool lower_async(const Instruction& inst);

@@ -88,7 +88,7 @@ class CountedLoop {
   // Returns false for instructions that involve other lanes. Unrolling could separate lanes of a warp that
   // were in one turn into different copies.
   static bool is_a_lane_s_own(const VirtualInst& inst) {
-    return is_pure(inst) && row_of(inst).unit != isa::Unit::Shuffle && row_of(inst).name != "activemask.b32";
+    return is_pure(inst) && !isa::depends_on_lanes(row_of(inst));
   }
 
   size_t loads(isa::Space space, bool of_one_value = false) const {
@@ -153,7 +153,7 @@ class CountedLoop {
     const bool reads_constants =
         row.memory.space == isa::Space::Const || row.memory.space == isa::Space::Param;
     if (row.effect != isa::Effect::None && !reads_constants) return false;
-    if (row.unit == isa::Unit::Shuffle || row.name == "activemask.b32") return false;
+    if (isa::depends_on_lanes(row)) return false;
     bool uniform = true;
     for_each_slot(row, [&](size_t slot, isa::OperandKind kind) {
       if (!isa::is_destination(kind))

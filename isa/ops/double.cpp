@@ -1,5 +1,6 @@
 // Defines double-precision arithmetic: IEEE 754 in all roundings. A NaN result is a source's NaN, made quiet.
 // SPDX-License-Identifier: Apache-2.0
+#include "isa/double_nans.h"
 #include "isa/op_makers.h"
 #include "isa/ops/families.h"
 #include "isa/ops/modifiers.h"
@@ -8,30 +9,11 @@
 namespace glint::isa::GLINT_ISA_PATH {
 namespace {
 
-constexpr uint64_t kSign = 1ull << 63, kInfinity = 0x7ff0'0000'0000'0000, kQuiet = 1ull << 51,
-                   kDefaultNan = 0xfff8'0000'0000'0000, kOne = 0x3ff0'0000'0000'0000,
+constexpr uint64_t kSign = 1ull << 63, kInfinity = 0x7ff0'0000'0000'0000, kQuiet = kQuietBit,
+                   kDefaultNan = kDefaultDoubleNan, kOne = 0x3ff0'0000'0000'0000,
                    kTwo = 0x4000'0000'0000'0000, kThree = 0x4008'0000'0000'0000,
                    kThird = 0x3fd5'5555'5555'5555, kTiny = 0x3c30'0000'0000'0000;  // 2^-60
 constexpr uint64_t kNan = 0x7ff8'0000'0000'0001, kSignaling = 0xfff0'0000'0000'0002;
-
-inline bool is_nan(double x) {
-  return x != x;
-}
-inline double quiet(double nan) {
-  return double_of(double_bits(nan) | kQuiet);
-}
-// Returns the result. If it is a NaN, returns the NaN source that wins, with sign and payload, or
-// 0xfff8000000000000 without a NaN source. Hosts differ in which NaN they return, so the choice is made here.
-inline double with_nan(double result, double only) {
-  const double nan = is_nan(only) ? quiet(only) : double_of(kDefaultNan);
-  return is_nan(result) ? nan : result;
-}
-inline double with_nan(double result, double strong, double weak) {
-  return with_nan(result, is_nan(strong) ? strong : weak);
-}
-inline double with_nan(double result, double strongest, double strong, double weak) {
-  return with_nan(result, strongest, is_nan(strong) ? strong : weak);
-}
 
 // Both say which source's NaN a NaN result takes: first that of the named source, then that of the third
 // source if there is one, then that of the other.

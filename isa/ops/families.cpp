@@ -50,6 +50,8 @@ std::span<const FamilyEntry> family_entries() {
       {"atomic", "These ops read, modify and write memory. Lanes take turns, the lowest first.",
        &baseline::atomic_rows},
       {"warp", "In these ops lanes read each other: shuffles, votes, matches and reductions.", &warp_rows},
+      {"tensor", "These ops multiply matrices that the lanes of a warp hold together.", &tensor_rows},
+      {"matrix access", "These ops load and store matrices of a warp.", &baseline::matrix_access_rows},
       {"barrier", "These ops wait for the other warps of the block, and order memory accesses.",
        &baseline::barrier_rows},
       {"asynchronous", "These ops copy to shared memory while the warp goes on, and wait at barriers there.",

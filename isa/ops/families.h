@@ -9,6 +9,7 @@ namespace glint::isa::baseline {
 RowList atomic_rows();
 RowList barrier_rows();
 RowList async_rows();
+RowList matrix_access_rows();
 RowList texture_rows();
 RowList surface_rows();
 RowList control_rows();
@@ -40,5 +41,6 @@ RowList convert_packed_rows();
 RowList predicate_rows();
 RowList memory_rows();
 RowList warp_rows();
+RowList tensor_rows();
 
 }  // namespace glint::isa::GLINT_ISA_PATH

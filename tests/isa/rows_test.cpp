@@ -145,8 +145,9 @@ TEST_CASE(
           int slot = 0;
           for (const OperandKind kind : row.operands.view()) {
             if (!is_destination(kind)) {
-              for (int lane = 0; lane < kLanes; ++lane)
-                w.set(kind, inst.operand[slot], lane, example.in[input]);
+              for (int part = 0; part < slots_of(kind); ++part)  // An input fills all parts of a vector.
+                for (int lane = 0; lane < kLanes; ++lane)
+                  w.set(kind, inst.operand[slot + part], lane, example.in[input]);
               ++input;
             }
             slot += slots_of(kind);
@@ -266,7 +267,8 @@ TEST_CASE("a destination may be any of its sources") {
         continue;
       Inst apart = spread(row, uint16_t(op)), same = apart;
       for (int s = 1; s < row.operands.count; ++s)
-        if (WarpFixture::is_wide(row.operands.kind[s]) == WarpFixture::is_wide(row.operands.kind[0]) &&
+        if (!is_destination(row.operands.kind[s]) &&
+            WarpFixture::is_wide(row.operands.kind[s]) == WarpFixture::is_wide(row.operands.kind[0]) &&
             (row.operands.kind[s] == OperandKind::SrcPred) ==
                 (row.operands.kind[0] == OperandKind::DstPred)) {
           same.operand[0] = apart.operand[s];

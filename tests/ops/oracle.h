@@ -20,6 +20,7 @@ uint64_t check_control(const isa::OpRow& row);
 uint64_t check_callable(const isa::OpRow& row);
 uint64_t check_hit_object(const isa::OpRow& row);
 uint64_t check_image_query(const isa::OpRow& row);
+uint64_t check_matrix_access(const isa::OpRow& row);
 uint64_t check_ray_query(const isa::OpRow& row);
 uint64_t check_ray_tracing(const isa::OpRow& row);
 uint64_t check_surface(const isa::OpRow& row);
@@ -38,6 +39,7 @@ inline constexpr OracleFile kOracles[] = {
     {"tests/ops/copy.cpp", &check_copy},
     {"tests/ops/hit_object.cpp", &check_hit_object},
     {"tests/ops/image_query.cpp", &check_image_query},
+    {"tests/ops/matrix_access.cpp", &check_matrix_access},
     {"tests/ops/ray_query.cpp", &check_ray_query},
     {"tests/ops/ray_tracing.cpp", &check_ray_tracing},
     {"tests/ops/surface.cpp", &check_surface},

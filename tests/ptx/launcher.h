@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,13 +32,16 @@ class Launcher {
     return *this;
   }
 
-  void run_functional(const pipeline::KernelGrid& grid) {
+  void run_functional(const pipeline::KernelGrid& grid, uint32_t threads = 1) {
     prepare(grid);
-    pipeline::run_functional(world_.world, 1'000'000'000, {});
+    pipeline::run_functional(world_.world, 1'000'000'000, {}, {}, nullptr, threads);
   }
-  Cycle run_timing(const pipeline::KernelGrid& grid, const pipeline::GpuParams& params) {
+  Cycle run_timing(const pipeline::KernelGrid& grid, const pipeline::GpuParams& params,
+                   uint32_t threads = 1) {
     prepare(grid);
-    return pipeline::TimingMachine(params, world_.world, false).run({});
+    pipeline::HostOptions host;
+    host.threads = threads;
+    return pipeline::TimingMachine(params, world_.world, false, host).run({});
   }
 
   // Returns the contents of buffer `n`, counted among the buffers.

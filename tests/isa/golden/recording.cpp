@@ -32,12 +32,6 @@ std::string unpacked(const std::filesystem::path& path) {
   return out;
 }
 
-// Returns the contents of a file, or of its compressed form if only that is present.
-std::string contents(const std::filesystem::path& path) {
-  const std::filesystem::path packed = path.string() + ".zst";
-  return std::filesystem::exists(packed) ? unpacked(packed) : content_of(path);
-}
-
 uint32_t bytes_of(const std::string& type) {
   if (type == "pred") return 1;
   if (type.ends_with("x2")) return 4;
@@ -51,6 +45,11 @@ std::vector<Array> arrays_of(const nlohmann::json& list) {
 }
 
 }  // namespace
+
+std::string contents(const std::filesystem::path& path) {
+  const std::filesystem::path packed = path.string() + ".zst";
+  return std::filesystem::exists(packed) ? unpacked(packed) : content_of(path);
+}
 
 uint64_t Recording::value(const std::string& data, const Array& array, uint32_t lane) {
   uint64_t value = 0;
@@ -149,6 +148,11 @@ std::string kernel_text(const Form& form) {
       parameters, declarations, loads, address("TMP", 8), form.text, stores);
 }
 
+void use_path(pipeline::KernelWorld& world, isa::Path path) {
+  for (exec::Step& step : world.image.code)
+    step.row = &isa::op_table(path)[step.inst.op], step.run = step.row->run;
+}
+
 Outcome run(const Recording& recording, const Form& form) {
   Outcome out;
   frontend::Kernel kernel;
@@ -164,8 +168,7 @@ Outcome run(const Recording& recording, const Form& form) {
     const isa::Path path = isa::Path(p);
     if (!isa::is_supported(path)) continue;
     pipeline::KernelWorld world(kernel);
-    for (exec::Step& step : world.image.code)
-      step.row = &isa::op_table(path)[step.inst.op], step.run = step.row->run;
+    use_path(world, path);
     world.set_grid({{recording.lanes / 32, 1, 1}, {32, 1, 1}, 0});
     std::vector<std::vector<std::byte>> arguments;
     std::vector<Address> at;

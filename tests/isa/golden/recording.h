@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isa/paths.h"
+#include "pipeline/kernel_launch.h"
 
 namespace glint::golden {
 
@@ -37,6 +38,9 @@ struct Recording {
   static uint64_t value(const std::string& data, const Array& array, uint32_t lane);
 };
 
+// Returns the contents of a file, or of its compressed form if only that is present.
+std::string contents(const std::filesystem::path& path);
+
 // Reads a folder with manifest.json, inputs.bin and outputs.bin, which may be compressed as .zst.
 Recording load_folder(const std::filesystem::path& folder);
 // Reads the extract made by tools/make_golden_extract.py: forms.txt and lanes.bin.
@@ -44,6 +48,9 @@ Recording load_extract(const std::filesystem::path& folder);
 
 // Returns a whole module with the form as a kernel.
 std::string kernel_text(const Form& form);
+
+// Lets the kernel run with the handlers of one SIMD path.
+void use_path(pipeline::KernelWorld& world, isa::Path path);
 
 // Holds the outputs of all lanes by each path, [path][operand][lane], or the message when the form does not
 // compile.

@@ -44,7 +44,7 @@ class RandomProgram {
   uint32_t pick(size_t n) { return uint32_t(random_() % n); }
   static bool is_plain(const isa::OpRow& row) {
     if (row.effect != isa::Effect::None || row.operands.count == 0) return false;
-    if (row.unit == isa::Unit::Shuffle) return false;  // the result depends on which lanes execute together
+    if (isa::depends_on_lanes(row)) return false;
     for (isa::OperandKind kind : row.operands.view())
       if (kind >= isa::OperandKind::Address64 || kind == isa::OperandKind::None) return false;
     return isa::is_destination(row.operands.kind[0]);

@@ -152,6 +152,21 @@ TEST_CASE_METHOD(Fixture,
   CHECK(list.lines()[0].words == 0xffff'ffff);
 }
 
+TEST_CASE("a matrix takes a pass of shared memory, or as many as its rows meet in a bank") {
+  isa::Access access;
+  const auto passes = [&](uint32_t matrices, uint32_t spread, LaneMask lanes) {
+    for (size_t lane = 0; lane < kLanes; ++lane) access.address[lane] = lane * spread;
+    return matrix_passes(access, lanes, matrices, 16);
+  };
+
+  CHECK(passes(1, 16, 0xff) == 1);
+  CHECK(passes(2, 16, 0xffff) == 2);
+  CHECK(passes(4, 16, kAllLanes) == 4);
+  CHECK(passes(4, 144, kAllLanes) == 4);
+  CHECK(passes(4, 128, kAllLanes) == 32);
+  CHECK(passes(1, 64, 0xff) == 4);
+}
+
 TEST_CASE("loads and stores of shared memory take the passes that an H100 takes") {
   std::ifstream file(GLINT_SOURCE_DIR "/bench/probes/shared.csv");
   std::string line;
