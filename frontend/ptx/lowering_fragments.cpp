@@ -58,7 +58,7 @@ constexpr const char* kFragments =
 
 int access_row(const FragmentAccess& access, uint32_t bits, uint32_t parts) {
   MemoryForm form;
-  form.op = access.is_load ? "ld" : "st";
+  form.op = std::string(access.is_load ? "ld" : "st");
   form.space = access.space;
   form.type = {bits < 32 ? 'u' : 'b', bits};
   form.type_name = form.type.kind + std::to_string(bits);
