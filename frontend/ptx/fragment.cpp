@@ -78,6 +78,8 @@ std::optional<FragmentProduct> fragment_product(const std::vector<std::string>& 
   if (of_bits) rest.erase(rest.begin(), rest.begin() + 2);
   const bool clamps = !rest.empty() && rest.back() == "satfinite";
   if (clamps) rest.pop_back();
+  // Doubles are rounded to nearest even, with and without a word for it.
+  if (rest.size() == 10 && rest[4] == "m8n8k4") std::erase(rest, "rn");
   if (rest.size() == 7) rest.insert(rest.begin() + 6, {"f16", "f16"});
   if (rest.size() != 9 || rest[0] != "sync" || rest[1] != "aligned") return {};
   const bool has_layouts = (rest[2] == "row" || rest[2] == "col") && (rest[3] == "row" || rest[3] == "col");

@@ -1,6 +1,7 @@
 // Lowers products of matrices (mma) and what moves matrices (ldmatrix, stmatrix, movmatrix).
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <fmt/format.h>
 #include <set>
@@ -212,16 +213,18 @@ void KernelLowering::lower_double_product(const Instruction& inst) {
   finish_moves();
 }
 
-// Lowers ldmatrix and stmatrix. An address without a space is a generic one in shared memory.
+// Lowers ldmatrix and stmatrix. An address without a space is a generic one in shared memory. Assemblers take
+// the words in any order, and programs have the number of matrices before and behind their shape.
 void KernelLowering::lower_matrix_access(const Instruction& inst) {
-  Words words;
-  bool is_shared = false;
-  for (const std::string& word : inst.words) {
-    const bool names_space = word == "shared" || word == "shared::cta";
-    is_shared |= names_space;
-    if (!names_space) words.push_back(word);
-  }
-  words.insert(words.end() - 1, "shared");
+  static constexpr std::array<std::string_view, 9> kOrder{"sync", "aligned", "m8n8",   "x1", "x2",
+                                                          "x4",   "trans",   "shared", "b16"};
+  const auto rank = [](const std::string& word) { return std::find(kOrder.begin(), kOrder.end(), word); };
+  Words words = inst.words;
+  for (std::string& word : words) word = word.substr(0, word.find("::cta"));
+  const bool is_shared = has_word(words, "shared");
+  if (!is_shared) words.emplace_back("shared");
+  std::stable_sort(words.begin() + 1, words.end(),
+                   [&](const std::string& x, const std::string& y) { return rank(x) < rank(y); });
   const int row = isa::find_op(joined(words));
   if (row < 0)
     return no_support(inst.position, fmt::format("not supported: '{}'", joined(inst.words)),

@@ -249,6 +249,7 @@ TEST_CASE("matrices are stored as they are loaded, and exchanged in registers as
   const std::string load = "ldmatrix.sync.aligned.m8n8.";
   check(load + "x1.shared.b16 {%out}, [%r2];", straight);
   check(load + "x1.trans.shared.b16 {%out}, [%r2];", exchanged);
+  check("ldmatrix.sync.aligned.x1.trans.m8n8.shared.b16 {%out}, [%r2];", exchanged);
   check(load + "x2.shared::cta.b16 {%r7,%out}, [%r2];",
         [&](uint32_t lane) { return straight(lane) + 0x00400040; });
   check(load + "x4.trans.shared.b16 {%r7,%r8,%r9,%out}, [%r2];",
@@ -298,6 +299,15 @@ TEST_CASE("products of fp8, of doubles with 16 rows, and of integers give what p
       "mov.u32 %r1, 0x7f7f7f7f; mov.u32 %r2, 0x7fffffff;\n"
       "mma.sync.aligned.m8n8k16.row.col.s32.s8.s8.s32 {%r4,%out}, {%r1}, {%r1}, {%r2,%r2};",
       0x8000'0000u + 16 * 127 * 127 - 1);
+}
+
+TEST_CASE("a product of doubles may say that it rounds to nearest") {
+  const std::string before = "mov.f64 %rd1, 0d3ff0000000000000; mov.f64 %rd2, 0d4000000000000000;\n";
+  const std::string after = " {%rd3,%rd4}, {%rd1}, {%rd2}, {%rd1,%rd1}; cvt.rni.u32.f64 %out, %rd4;";
+  for (const char* types :
+       {"m8n8k4.f64.f64.f64.f64", "m8n8k4.f64.f64.f64.f64.rn", "m8n8k4.rn.f64.f64.f64.f64"})
+    CHECK(outputs(storing(before + "wmma.mma.sync.aligned.row.col." + types + after)) ==
+          std::vector<uint32_t>(32, 9));
 }
 
 TEST_CASE("the results of a wmma may be registers that later steps of it read") {
