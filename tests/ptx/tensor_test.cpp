@@ -323,6 +323,33 @@ TEST_CASE("the results of a wmma may be registers that later steps of it read") 
   CHECK(outputs(storing(line)) == std::vector<uint32_t>(32, std::bit_cast<uint32_t>(17.0f)));
 }
 
+TEST_CASE("a product waits for the sums before it for the latency, and for its pipe for the interval") {
+  // Returns the cycles of a kernel with `count` products that take turns on so many chains of sums.
+  const auto cycles = [](uint32_t count, uint32_t chains) {
+    std::string body = "mov.u32 %r1, 0x3c003c00;\n";
+    for (uint32_t c = 0; c < chains; ++c)
+      for (uint32_t i = 0; i < 4; ++i) body += fmt::format("mov.u32 %r{}, %lane; ", 2 + 4 * c + i);
+    for (uint32_t n = 0; n < count; ++n) {
+      const uint32_t c = 2 + 4 * (n % chains);
+      const std::string sums = fmt::format("{{%r{},%r{},%r{},%r{}}}", c, c + 1, c + 2, c + 3);
+      body += fmt::format(
+          "mma.sync.aligned.m16n8k16.row.col.f32.f16.f16.f32 {0}, {{%r1,%r1,%r1,%r1}}, {{%r1,%r1}}, {0};\n",
+          sums);
+    }
+    for (uint32_t c = 0; c < chains; ++c) body += fmt::format("add.u32 %out, %out, %r{};\n", 5 + 4 * c);
+    Launcher k(storing(body), "test.ptx", "k");
+    k.buffer(std::vector<uint32_t>(32));
+    pipeline::GpuParams params;
+    params.cores = 1;
+    params.core.units.tensor = {24, 6};
+    return k.run_timing(kWarp, params);
+  };
+
+  CHECK(cycles(88, 1) - cycles(56, 1) == 32 * 24);
+  CHECK(cycles(88, 2) - cycles(56, 2) == 32 * 12);
+  CHECK(cycles(88, 4) - cycles(56, 4) == 32 * 6);
+}
+
 TEST_CASE("products that are not there are refused with the shapes that are") {
   CHECK(contains(answer_to("mma.sync.aligned.m16n8k64.row.col.f32.f16.f16.f32 {%r1}, {%r2}, {%r3}, {%r4};"),
                  "with these types there are the shapes m16n8k16, m16n8k8, with .row.col"));
