@@ -246,6 +246,33 @@ TEST_CASE("a message of the validator calls values by their names") {
   CHECK_THAT(validate_spirv(assemble_spirv(text, "t.spvasm")), Contains("%sum = OpFAdd %float %uint_1"));
 }
 
+TEST_CASE("members of a block may overlap, as vkd3d writes them") {
+  const std::string text =
+      "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint GLCompute %main \"main\"\n"
+      "OpExecutionMode %main LocalSize 1 1 1\nOpDecorate %block Block\nOpMemberDecorate %block 0 Offset 0\n"
+      "OpMemberDecorate %block 1 Offset 4\n%void = OpTypeVoid\n%type = OpTypeFunction %void\n"
+      "%float = OpTypeFloat 32\n%v4float = OpTypeVector %float 4\n%block = OpTypeStruct %v4float %v4float\n"
+      "%pointer = OpTypePointer PushConstant %block\n%p = OpVariable %pointer PushConstant\n"
+      "%main = OpFunction %void None %type\n%label = OpLabel\n%all = OpLoad %block "
+      "%p\nOpReturn\nOpFunctionEnd\n";
+  Diagnostics warnings;
+  CHECK_NOTHROW(simplify(assemble_spirv(text, "t.spvasm"), "t.spvasm", warnings));
+}
+
+TEST_CASE("a size of blocks that is no constant is refused") {
+  const std::string text =
+      "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint GLCompute %main \"main\"\n"
+      "OpExecutionModeId %main LocalSizeId %one SIZE %one\n%void = OpTypeVoid\n%type = OpTypeFunction %void\n"
+      "%uint = OpTypeInt 32 0\n%one = OpConstant %uint 1\n"
+      "%main = OpFunction %void None %type\n%label = OpLabel\nOpReturn\nOpFunctionEnd\n";
+  const auto verdict_on = [&](const std::string& size) {
+    std::string module = text;
+    return validate_spirv(assemble_spirv(module.replace(module.find("SIZE"), 4, size), "t.spvasm"));
+  };
+  CHECK(verdict_on("%one").empty());
+  CHECK_THAT(verdict_on("%uint"), Contains("of an execution mode is no constant"));
+}
+
 TEST_CASE("words that are not a valid module are refused") {
   Diagnostics warnings;
   CHECK_THROWS_AS(simplify({1, 2, 3}, "x", warnings), UserError);
