@@ -40,6 +40,7 @@ struct Sampler {
   Comparison compare = Comparison::Never;
   Reduction reduction = Reduction::Mean;
   float max_anisotropy = 1.0f;  // from 1, which is isotropic, to kMaxAnisotropy
+  uint32_t weight_bits = 0;     // bits of a linear filter's weights in each direction; 0: all
   std::string unbound{};        // Not empty: nobody bound the sampler, and this names the place.
 };
 

@@ -96,7 +96,12 @@ TexelReader::Axis TexelReader::axis_of(const SampleRequest& request, const Place
   const Wrap mode = place.is_cube ? Wrap::ClampToEdge : sampler_.wrap[n];
   float x = sampler_.unnormalized ? place.at[n] : place.at[n] * float(size);
   if (linear) x -= 0.5f;
-  const double middle = tame(mode, x, size), first = std::floor(middle);
+  double middle = tame(mode, x, size);
+  if (linear && sampler_.weight_bits) {
+    const double steps = double(uint64_t{1} << sampler_.weight_bits);
+    middle = std::floor(middle * steps + 0.5) / steps;
+  }
+  const double first = std::floor(middle);
   const int64_t i = int64_t(first) + request.offset[n];
   if (!linear) return {wrap(mode, i, size), 0, 0.0f};
   // On cubes the neighbour's texels stand for those outside. They are found when they are read.

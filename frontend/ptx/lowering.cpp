@@ -244,7 +244,7 @@ void KernelLowering::lower(const Instruction& inst) {
                       fmt::format("not supported: '{}', which belongs to {}", joined(inst.words), part));
   if (options_.check_types) check_types(inst);
   if (lower_control(inst) || lower_special(inst) || lower_async(inst) || lower_video(inst) ||
-      lower_tensor(inst))
+      lower_tensor(inst) || lower_image(inst))
     return;
   lower_generic(inst);
 }

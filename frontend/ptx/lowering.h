@@ -127,6 +127,7 @@ class KernelLowering {
   bool lower_special(const Instruction& inst);
   void lower_row(const Instruction& inst, int row, std::vector<const Operand*> operands);
   void lower_generic(const Instruction& inst);
+  bool lower_half_conversion(const Instruction& inst);
   void lower_move(const Instruction& inst);
   void lower_vector_move(const Instruction& inst);
   void join_parts(const Instruction& inst, const Operand& to, const std::vector<Operand>& parts);
@@ -181,6 +182,13 @@ class KernelLowering {
   VirtualOperand source_bytes(const Instruction& inst, const Operand& o, uint32_t bytes);
   VirtualOperand whole_address(const Operand& o);
   VirtualOperand barrier_address(const Operand& o, bool is_generic, int64_t& imm);
+
+  // These functions are in lowering_textures.cpp.
+  bool lower_image(const Instruction& inst);
+  void lower_image_row(const Instruction& inst);
+  void lower_surface_bits(const Instruction& inst);
+  std::vector<VirtualOperand> image_place(const Instruction& inst, const Operand& at,
+                                          const isa::ImageAccess& image);
 
   // These functions are in lowering_memory.cpp.
   void lower_memory(const Instruction& inst);

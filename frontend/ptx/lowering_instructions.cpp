@@ -125,6 +125,20 @@ void KernelLowering::lower_generic(const Instruction& inst) {
   lower_row(inst, row, flattened(inst.operands));
 }
 
+// Lowers a conversion between f16 and bf16 by way of f32, which has all values of both. So only the second
+// step rounds.
+bool KernelLowering::lower_half_conversion(const Instruction& inst) {
+  const std::string name = joined(inst.words);
+  const bool to_half = name == "cvt.rn.f16.bf16";
+  if ((!to_half && name != "cvt.rn.bf16.f16") || inst.operands.size() != 2) return false;
+  const VirtualOperand wide = compute32(to_half ? "cvt.f32.bf16" : "cvt.f32.f16",
+                                        {source(inst.operands[1], OperandKind::Src32, {'f', 16})});
+  emit(isa::op_index(to_half ? "cvt.rn.f16.f32" : "cvt.rn.bf16.f32"),
+       {destination(inst.operands[0], OperandKind::Dst32, {'f', 16}), wide});
+  finish_moves();
+  return true;
+}
+
 bool KernelLowering::lower_special(const Instruction& inst) {
   using Handler = void (KernelLowering::*)(const Instruction&);
   static const std::map<std::string, Handler> kHandlers{{"mov", &KernelLowering::lower_move},
@@ -146,6 +160,7 @@ bool KernelLowering::lower_special(const Instruction& inst) {
                                               "pmevent",  "griddepcontrol", "setmaxnreg"};
   const std::string& op = inst.words[0];
   if (kNothing.contains(op)) return true;
+  if (op == "cvt" && lower_half_conversion(inst)) return true;
   if (op == "nanosleep") return emit(isa::op_index("yield"), {}), true;
   const bool has_carry = has_word(inst.words, "cc") || op == "addc" || op == "subc" || op == "madc";
   if (has_carry) {
@@ -192,6 +207,9 @@ void KernelLowering::join_parts(const Instruction& inst, const Operand& to,
   } else if (bits == 64 && part == 16) {
     const VirtualOperand low = halves(value(0), value(1)), high = halves(value(2), value(3));
     emit(isa::op_index("pack.b64"), {destination(to, OperandKind::Dst64, types[0]), low, high});
+  } else if (bits == 16 && part == 8) {
+    emit(isa::op_index("prmt.b32"), {destination(to, OperandKind::Dst32, types[0]), value(0), value(1),
+                                     VirtualOperand::value(kLowBytes)});
   } else if (bits == 32 && (part == 16 || part == 8)) {
     const auto bytes = [&](size_t i) {
       return compute32("prmt.b32", {value(i), value(i + 1), VirtualOperand::value(kLowBytes)});
@@ -212,7 +230,7 @@ void KernelLowering::split_parts(const Instruction& inst, const std::vector<Oper
   const uint32_t bits = types.empty() ? 0 : types[0].bits,
                  part = parts.empty() ? 0 : bits / uint32_t(parts.size());
   const auto split = [&](VirtualOperand word, size_t first) {
-    for (uint32_t i = 0; i < 32 / part; ++i) {
+    for (uint32_t i = 0; i < std::min(bits, 32u) / part; ++i) {
       const VirtualOperand to = destination(parts[first + i], OperandKind::Dst32, {'b', part});
       emit(isa::op_index("bfe.u32"),
            {to, word, VirtualOperand::value(i * part), VirtualOperand::value(part)});
@@ -230,7 +248,7 @@ void KernelLowering::split_parts(const Instruction& inst, const std::vector<Oper
       split(low, 0);
       split(high, 2);
     }
-  } else if (bits == 32 && (part == 16 || part == 8)) {
+  } else if ((bits == 32 && (part == 16 || part == 8)) || (bits == 16 && part == 8)) {
     // The value is copied first, because one of the parts may be written where the whole is read.
     split(compute32("mov.b32", {source(from, OperandKind::Src32, types[0])}), 0);
   } else {

@@ -8,16 +8,17 @@
 namespace glint::frontend::ptx {
 namespace {
 
-constexpr const char* kTextures = "textures and surfaces, because a launch file cannot bind them";
+constexpr const char* kHandles = "questions about handles";
 constexpr const char* kTensors = "asynchronous ops of tensor cores (there are mma and wmma)";
 constexpr const char* kBulk = "bulk copies, and the transactions that barriers wait for";
 constexpr const char* kClusters = "clusters of more than one block";
 
 const std::map<std::string, const char*, std::less<>>& part_by_op() {
-  static const std::map<std::string, const char*, std::less<>> kParts{
-      {"tex", kTextures},  {"tld4", kTextures},   {"txq", kTextures},  {"suld", kTextures},
-      {"sust", kTextures}, {"sured", kTextures},  {"suq", kTextures},  {"istypep", kTextures},
-      {"wgmma", kTensors}, {"tcgen05", kTensors}, {"mapa", kClusters}, {"getctarank", kClusters}};
+  static const std::map<std::string, const char*, std::less<>> kParts{{"istypep", kHandles},
+                                                                      {"wgmma", kTensors},
+                                                                      {"tcgen05", kTensors},
+                                                                      {"mapa", kClusters},
+                                                                      {"getctarank", kClusters}};
   return kParts;
 }
 

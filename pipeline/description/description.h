@@ -84,6 +84,12 @@ struct ImageDescription {
   SourceLocation where;
 };
 
+// Describes an image that kernels of a launch file read or write, and what its accesses take it for.
+struct KernelImage {
+  ImageDescription image;
+  isa::ImageShape shape = isa::ImageShape::D2;
+};
+
 // Holds opacity micromaps as a file has them: one map for each text of digits, each of which is a state.
 struct OpacityDescription {
   struct Map {

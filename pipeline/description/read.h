@@ -23,6 +23,8 @@ void add_shader_file(Reading& r, const std::string& name, const SourceLocation& 
 void read_launches(Reading& r, TableReader& root);
 // These are in read_resources.cpp.
 void read_resources(Reading& r, TableReader& root);
+// Reads an [[image]] of a launch file of kernels. It needs a name, because arguments name it.
+KernelImage read_kernel_image(Reading& r, const Value& value);
 DataSource read_data(Reading& r, TableReader& t, bool is_buffer);
 // These are in read_structures.cpp.
 void read_structures(Reading& r, TableReader& root);

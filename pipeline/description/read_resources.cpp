@@ -82,12 +82,8 @@ BufferDescription read_buffer(Reading& r, const Value& value) {
   return out;
 }
 
-ImageDescription read_image(Reading& r, const Value& value) {
-  TableReader t(value, "an image", r.errors);
-  ImageDescription out;
-  out.where = value.where;
-  out.slot = read_slot(t);
-  out.name = t.text("name", name_of_slot("image", out.slot));
+// Reads everything of an image but its name and its place.
+void read_image_keys(Reading& r, TableReader& t, ImageDescription& out) {
   for (const std::string& file : t.texts("file")) out.files.push_back(r.beside(file));
   if (t.take("format")) {
     out.format = format_named(t.text("format"));
@@ -109,7 +105,7 @@ ImageDescription read_image(Reading& r, const Value& value) {
                  ? "data"
                  : t.name("init", t.take("value") ? "value" : "zero", {"zero", "value", "checker", "random"});
   if (has_data && !out.files.empty())
-    r.errors.error(value.where, fmt::format("image '{}' has both a file and data", out.name));
+    r.errors.error(out.where, fmt::format("image '{}' has both a file and data", out.name));
   const std::vector<double> color = t.numbers("value");
   for (size_t i = 0; i < 4; ++i) out.value[i] = i < color.size() ? color[i] : i == 3 ? 1 : 0;
   out.seed = uint64_t(t.integer("seed", 1, 0, INT64_MAX));
@@ -118,6 +114,15 @@ ImageDescription read_image(Reading& r, const Value& value) {
   const std::vector<double> border = t.numbers("border");
   std::copy_n(border.begin(), std::min<size_t>(4, border.size()), out.border.begin());
   out.saves = read_saves(t);
+}
+
+ImageDescription read_image(Reading& r, const Value& value) {
+  TableReader t(value, "an image", r.errors);
+  ImageDescription out;
+  out.where = value.where;
+  out.slot = read_slot(t);
+  out.name = t.text("name", name_of_slot("image", out.slot));
+  read_image_keys(r, t, out);
   t.finish();
   return out;
 }
@@ -186,6 +191,27 @@ DataSource read_data(Reading& r, TableReader& t, bool is_buffer) {
     r.errors.error(t.where(), "a buffer needs 'data', 'file', 'count' (of its type) or 'bytes'");
   if ((out.init == "file" || out.init == "mesh") && out.file.empty())
     r.errors.error(t.where(), "'file' is missing");
+  return out;
+}
+
+KernelImage read_kernel_image(Reading& r, const Value& value) {
+  static const std::vector<std::string> kShapes{"1d", "2d", "3d", "a1d", "a2d", "cube", "acube"};
+  TableReader t(value, "an image", r.errors);
+  KernelImage out;
+  out.image.where = value.where;
+  out.image.name = t.required_text("name");
+  read_image_keys(r, t, out.image);
+  const std::string shape = t.name("shape", "2d", kShapes);
+  out.shape = isa::ImageShape(int(isa::ImageShape::D1) +
+                              int(std::find(kShapes.begin(), kShapes.end(), shape) - kShapes.begin()));
+  // Choice: what a description of a texture has in CUDA where nobody sets it (cudaTextureDesc).
+  if (!out.image.has_filter) out.image.sampler.mag = out.image.sampler.min = exec::Filter::Nearest;
+  out.image.has_filter = true;
+  out.image.sampler.unnormalized = !t.flag("normalized", false);
+  // Source: CUDA C++ Programming Guide, "Linear Filtering"; an H200 rounds to the nearest of these weights.
+  constexpr uint32_t kWeightBits = 8;
+  out.image.sampler.weight_bits = kWeightBits;
+  t.finish();
   return out;
 }
 

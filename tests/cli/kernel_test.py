@@ -87,6 +87,57 @@ class Kernels(GlintTest):
         self.assertEqual(self.glint("report", "timing", "--out", "page.html").returncode, 0)
         self.assertIn("again", (self.folder / "page.html").read_text())
 
+    IMAGES = """.version 7.0
+.target sm_70
+.address_size 64
+.extern .func (.param .b32 r) vprintf(.param .b64 f, .param .b64 a);
+.global .u32 launches;
+.global .align 1 .b8 text[8] = {108, 58, 32, 37, 117, 10, 0};
+.visible .entry copy(.param .u64 from, .param .u64 to)
+{
+  .reg .b64 %rd<4>; .reg .b32 %r<4>; .reg .f32 %f<6>;
+  ld.param.u64 %rd1, [from]; ld.param.u64 %rd2, [to]; mov.u32 %r1, %tid.x; mov.u32 %r2, %tid.y;
+  cvt.rn.f32.u32 %f1, %r1; cvt.rn.f32.u32 %f2, %r2;
+  tex.2d.v4.f32.f32 {%f1, %f2, %f3, %f4}, [%rd1, {%f1, %f2}];
+  shl.b32 %r1, %r1, 2; cvt.rni.u32.f32 %r3, %f1; sust.b.2d.b32.trap [%rd2, {%r1, %r2}], {%r3};
+  mov.u32 %r3, 1; red.global.add.u32 [launches], %r3; ret;
+}
+.visible .entry tell()
+{
+  .local .align 8 .b8 depot[8]; .reg .b64 %rd<4>; .reg .b32 %r<2>;
+  ld.global.u32 %r1, [launches]; st.local.u32 [depot], %r1; mov.u64 %rd1, depot; cvta.local.u64 %rd2, %rd1; mov.u64 %rd3, text;
+  { .param .b64 f; st.param.b64 [f], %rd3; .param .b64 a; st.param.b64 [a], %rd2; .param .b32 r; call (r), vprintf, (f, a); }
+  ret;
+}
+"""
+    LAUNCHES = """kernel = "images.ptx"
+image = [{ name = "in", format = "r32_float", size = [2, 2], data = [5, 6, 7, 8] },
+         { name = "out", format = "r32_uint", size = [2, 2], save = "out.csv" }]
+[[launch]]
+name = "copy"
+entry = "copy"
+block = [2, 2]
+argument = [{ texture = "in" }, { surface = "out" }]
+[[launch]]
+name = "tell"
+entry = "tell"
+"""
+
+    def test_images_are_handles_and_kernels_share_variables_and_print(self):
+        self.write("images.ptx", self.IMAGES)
+        self.write("images.toml", self.LAUNCHES)
+        for mode in ("functional", "timing"):
+            done = self.glint("run", "images.toml", "--mode", mode, "--out", mode)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("l: 4\n", done.stderr)
+            self.assertEqual((self.folder / mode / "printf.txt").read_text(), "l: 4\n")
+            red = [line.split(",")[2] for line in (self.folder / mode / "out.csv").read_text().split() if line[0].isdigit()]
+            self.assertEqual(red, ["5", "6", "7", "8"])
+        self.write("wrong.toml", self.LAUNCHES.replace('texture = "in"', 'texture = "no"').replace("r32_uint", "r32_unit"))
+        self.expect(2, ["'r32_unit' is not a format of texels", "did you mean 'r32_uint'?"], "run", "wrong.toml", "--out", "w")
+        self.write("wrong.toml", self.LAUNCHES.replace('texture = "in"', 'texture = "no"'))
+        self.expect(2, ["wrong.toml:8:", "there is no [[image]] with the name 'no'"], "run", "wrong.toml", "--out", "w")
+
     def test_a_cold_launch_of_a_list_has_the_cycles_that_it_has_alone(self):
         self.write_list()
         self.write("list.toml", (self.folder / "list.toml").read_text().replace('caches = "warm"\n', ""))

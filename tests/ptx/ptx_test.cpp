@@ -73,7 +73,6 @@ TEST_CASE(
     CAPTURE(line);
     CHECK(message_of(storing(line)).find(message) != std::string::npos);
   };
-  says("tex.2d.v4.f32.f32 {%f1,%f2,%f3,%f4}, [%d1,{%f1,%f2}];", "which belongs to textures and surfaces");
   says("wgmma.wait_group.sync.aligned 0;", "belongs to asynchronous ops of tensor cores");
   says("cp.async.bulk.commit_group;", "'cp.async.bulk.commit_group', which belongs to bulk copies");
   says("st.async.shared::cluster.u32 [%r1], %r2, [%r3];", "belongs to bulk copies");

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/glint/run/kernel_images.h"
 #include "report/files/config_file.h"
 #include "setup/resources.h"
 
@@ -24,7 +25,7 @@ std::string read_text(const std::string& path, const SourceLocation& where) {
 
 Kernels::Kernels(const LaunchFile& file, const std::string& path, const pipeline::GpuParams& gpu,
                  const LaunchOptions& options, exec::PrintLog* prints)
-    : file_(file), path_(path) {
+    : file_(file), path_(path), images_(place_images(file.images, *memory_, host_threads(options.threads))) {
   std::map<std::string, Address> known;
   for (const KernelLaunch& launch : file.launches) {
     compile(launch, gpu, options.on_fault, prints);
@@ -51,6 +52,7 @@ void Kernels::compile(const KernelLaunch& launch, const pipeline::GpuParams& gpu
       frontend::compile_ptx(text, launch.kernel, launch.entry, compiler), memory_,
       &variables_[launch.kernel]);
   made->world.prints = prints;
+  made->world.images = images_;
   made->world.on_fault = on_fault;
   made->world.layout = gpu.core.layout.make({});
   text_ += text;
@@ -102,6 +104,8 @@ std::vector<std::string> Kernels::keep_buffers(const report::RunDirectory& direc
         line += "\n             " + first_values(argument.type, data, bytes, argument.show);
       lines.push_back(std::move(line));
     }
+  for (std::string& line : keep_images(file_.images, images_, *memory_, directory, 1))
+    lines.push_back(std::move(line));
   return lines;
 }
 

@@ -44,6 +44,7 @@ class Kernels {
   const LaunchFile& file_;
   const std::string path_;
   std::shared_ptr<mem::AddressSpace> memory_ = std::make_shared<mem::AddressSpace>();
+  std::vector<exec::ImageView> images_;
   std::map<std::string, pipeline::ModuleVariables> variables_;  // by file
   std::map<Key, std::unique_ptr<pipeline::KernelWorld>> worlds_;
   std::vector<std::vector<Address>> buffers_;  // by launch and argument; 0 for numbers

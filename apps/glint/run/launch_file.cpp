@@ -9,10 +9,13 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
+#include "apps/glint/run/kernel_images.h"
 #include "base/toml_text.h"
 #include "pipeline/description/value.h"
 #include "setup/resources.h"
@@ -57,15 +60,17 @@ class Reader {
     const toml::table root = toml_of_file(path_);
     reject_others(root,
                   {"kernel", "entry", "grid", "block", "shared_bytes", "stack_bytes", "heap_bytes",
-                   "contract", "argument", "launch"},
+                   "contract", "argument", "launch", "image"},
                   "a launch file");
+    LaunchFile out;
+    if (root.contains("image")) out.images = read_kernel_images(path_);
+    for (size_t i = 0; i < out.images.size(); ++i) handle_of_[out.images[i].image.name] = i;
     KernelLaunch common;
     common.where = {path_, 0, 0};
     launch(root, common);
     if (common.kernel.empty())
       errors_.error({path_, 0, 0},
                     "'kernel' is missing: it is the path of the PTX file, relative to this file's folder");
-    LaunchFile out;
     if (const toml::node* list = root.get("launch"); !list)
       out.launches.push_back(std::move(common));
     else if (!list->is_array_of_tables() || list->as_array()->empty())
@@ -201,6 +206,7 @@ class Reader {
       buffer(table, out);
       return out;
     }
+    if (table.contains("texture") || table.contains("surface")) return image_handle(table, std::move(out));
     reject_others(table, kTypes, "a number, which is written TYPE = VALUE");
     for (const std::string& type : kTypes) {
       const auto value = number(table, type.c_str());
@@ -211,7 +217,21 @@ class Reader {
       out.bytes = number_bytes(type, *value, node.value<int64_t>().value_or(0));
       return out;
     }
-    errors_.error(out.where, "an argument is a number (u32 = 7) or a buffer (buffer = \"name\")");
+    errors_.error(out.where,
+                  "an argument is a number (u32 = 7), a buffer (buffer = \"name\"), or an image (texture or "
+                  "surface = \"name\")");
+    return out;
+  }
+
+  // Reads a handle. Textures and surfaces of one image have the same one.
+  LaunchArgument image_handle(const toml::table& table, LaunchArgument out) {
+    const char* const key = table.contains("texture") ? "texture" : "surface";
+    reject_others(table, {key}, "a handle, which is written texture = \"name\" or surface = \"name\"");
+    const std::string name = text(table, key).value_or("");
+    const auto handle = handle_of_.find(name);
+    if (handle == handle_of_.end())
+      errors_.error(out.where, fmt::format("there is no [[image]] with the name '{}'", name));
+    out.bytes = pipeline::KernelWorld::argument(uint64_t(handle == handle_of_.end() ? 0 : handle->second));
     return out;
   }
 
@@ -295,7 +315,8 @@ class Reader {
   }
 
   const std::string path_;
-  std::set<std::string> known_;  // buffers of the launches that were read
+  std::map<std::string, uint64_t> handle_of_;  // by name of an image
+  std::set<std::string> known_;                // buffers of the launches that were read
   Diagnostics errors_;
 };
 

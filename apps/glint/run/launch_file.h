@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "pipeline/description/description.h"
 #include "pipeline/kernel_launch.h"
 
 namespace glint::app {
@@ -34,7 +35,8 @@ struct KernelLaunch {
 };
 
 struct LaunchFile {
-  std::vector<KernelLaunch> launches;  // in order, at least one
+  std::vector<KernelLaunch> launches;         // in order, at least one
+  std::vector<pipeline::KernelImage> images;  // Arguments have their numbers as handles.
   bool is_list() const { return !launches[0].name.empty(); }
 };
 
