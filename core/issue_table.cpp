@@ -176,7 +176,10 @@ IssueTable::IssueTable(const exec::Image& image, const Params& params) {
       row.latency =
           isa::CopyGroupKind(op.detail) == isa::CopyGroupKind::Wait ? uint16_t(params.async.copy_wait) : 1;
     row.interval = uint16_t(unit.interval * OpTime::kParts);
-    const OpTime* time = row.finish == Finish::Fixed ? op_times->find(op.name) : nullptr;
+    // Functions return from compute programs, which have no other returns. Shaders take the time of the unit.
+    const bool ends_function = op.effect == Effect::Return && row.stage == isa::Stage::Compute;
+    const bool is_timed = row.finish == Finish::Fixed || ends_function;
+    const OpTime* time = is_timed ? op_times->find(op.name) : nullptr;
     if (time) take_time(row, *time);
     issues_.push_back(uint8_t(time ? time->issues : 1));
     if (op.effect == Effect::Atomic) row.atomic = isa::AtomicKind(op.detail);
