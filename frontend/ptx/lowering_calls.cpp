@@ -227,8 +227,11 @@ void KernelLowering::call_function(const Call& call) {
     words.insert(words.end(), symbol.elements.begin(), symbol.elements.end());
   };
   const std::vector<Declaration>& parameters = call.signature->parameters;
-  for (size_t i = 0; i < call.arguments.size(); ++i) append(words_for(parameters[i], &call.arguments[i]));
-  words.resize(bytes_of(parameters) / 4);  // A variable may have more bytes than the parameter.
+  for (size_t i = 0; i < call.arguments.size(); ++i) {
+    Symbol symbol = words_for(parameters[i], &call.arguments[i]);
+    symbol.elements.resize(words_of(parameters[i]));  // A variable may have more bytes than the parameter.
+    append(symbol);
+  }
   const VirtualOperand number =
       call.callee ? VirtualOperand::value(graph_.number_of(call.callee->name)) : call.number;
   move_frame_words(true, VirtualOperand::callee_frame(), 0, words);

@@ -169,6 +169,12 @@ VirtualOperand KernelLowering::name_source(const Operand& o, bool wide) {
     const VirtualOperand special = special_source(o, wide, found);
     if (found) return special;
     if (functions_.contains(o.name)) return VirtualOperand::value(graph_.number_of(o.name));
+    if (o.name.starts_with("%envreg")) {
+      no_support(
+          o.position,
+          fmt::format("not supported: '{}', by which cooperative groups wait for the whole grid", o.name));
+      return VirtualOperand::value(0);
+    }
     error(o.position,
           fmt::format("'{}' is not declared", o.element.empty() ? o.name : o.name + "." + o.element));
     return VirtualOperand::value(0);

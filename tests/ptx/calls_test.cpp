@@ -116,7 +116,7 @@ TEST_CASE("a called function has variables, wide and narrow parameters, and regi
   const std::string body = R"(
     .local .align 4 .b8 mine[8]; st.local.u32 [mine], %lane; and.b32 %r3, %lane, 3;
     cvt.u64.u32 %rd1, %lane; add.u64 %rd1, %rd1, 0x100000000;
-    { .param .b64 pa; st.param.b64 [pa], %rd1; .param .align 4 .b8 ps[12]; st.param.b32 [ps+8], 7;
+    { .param .b64 pa; st.param.b64 [pa], %rd1; .param .align 4 .b8 ps[16]; st.param.b32 [ps+8], 7;
       .param .b16 ph; st.param.b16 [ph], 0xfff0; .param .b32 pd; st.param.b32 [pd], %r3; .param .align 8 .b8 pr[16];
       call (pr), mix, (pa, ps, ph, pd); ld.param.b64 %rd2, [pr]; ld.param.b32 %r1, [pr+8]; }
     ld.local.u32 %r2, [mine]; shr.u64 %rd3, %rd2, 32; cvt.u32.u64 %r4, %rd3; cvt.u32.u64 %r5, %rd2;

@@ -74,6 +74,7 @@ TEST_CASE(
     CHECK(message_of(storing(line)).find(message) != std::string::npos);
   };
   says("wgmma.wait_group.sync.aligned 0;", "belongs to asynchronous ops of tensor cores");
+  says("mov.u32 %r1, %envreg2;", "by which cooperative groups wait for the whole grid");
   says("cp.async.bulk.commit_group;", "'cp.async.bulk.commit_group', which belongs to bulk copies");
   says("st.async.shared::cluster.u32 [%r1], %r2, [%r3];", "belongs to bulk copies");
   says("barrier.cluster.arrive;", "belongs to clusters of more than one block");
