@@ -20,6 +20,9 @@ namespace glint::core {
 // units that all schedulers share (load-store, texture); a queue (core/lsu.h) limits it, not an interval.
 enum class Pipe : uint8_t { Int, Fp32, Fp64, Sfu, Tensor, Const, Branch, RtUnit, Memory, Count };
 inline constexpr int kNumPipes = int(Pipe::Count);
+// These are the pipes that an instruction may find busy: all but the memory's, which comes last.
+inline constexpr int kNumTimedPipes = int(Pipe::Memory);
+static_assert(kNumTimedPipes + 1 == kNumPipes);
 Pipe pipe_of(isa::Unit unit);
 
 // Names the queue in front of a shared unit that an instruction has to enter.

@@ -65,7 +65,7 @@ void Scheduler::find_reason(uint64_t waiting, uint64_t at_pipes, uint64_t at_doo
   if (at_pipes) {
     reason_ = Stall::MathThrottle;
     // There is no branch, because which pipes are busy cannot be foreseen.
-    for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe) {
+    for (size_t pipe = 0; pipe < size_t(kNumTimedPipes); ++pipe) {
       const auto nobody = Cycle{(at_pipes & needs_pipe_[pipe]) == 0};
       next = std::min(next, pipe_free_[pipe] | (Cycle{0} - nobody));
     }

@@ -211,7 +211,7 @@ class Scheduler {
   // There is no branch, because which pipes are busy cannot be foreseen.
   uint64_t leave_out_busy_pipes(uint64_t ready, Cycle now) const {
     uint64_t busy = 0;
-    for (size_t pipe = 0; pipe < size_t(kNumPipes); ++pipe)
+    for (size_t pipe = 0; pipe < size_t(kNumTimedPipes); ++pipe)
       busy |= needs_pipe_[pipe] & (uint64_t{0} - uint64_t{pipe_free_[pipe] > now});
     return ready & ~busy;
   }
