@@ -119,8 +119,12 @@ exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& ran
           count(range.layerCount, range.baseArrayLayer, image.whole.layers / samples) * samples};
 }
 
-std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at) {
+void check_bound(const Image& image) {
   if (!image.whole.base) throw Refusal(fmt::format("{} is not bound to memory", image.whole.name));
+}
+
+std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at) {
+  check_bound(image);
   std::byte* const texel = device.memory.find(image.whole.address_of(at), image.whole.texel_bytes());
   if (!texel) throw Refusal(fmt::format("the memory of {} was freed", image.whole.name));
   return texel;

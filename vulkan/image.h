@@ -93,6 +93,8 @@ exec::Words cleared_words(exec::TexelFormat format, const VkClearDepthStencilVal
 // Refusal when the image does not have them.
 exec::ImageRange range_of(const Image& image, const VkImageSubresourceRange& range);
 
+// Throws Refusal for an image that is not bound to memory.
+void check_bound(const Image& image);
 // Returns the host's bytes of a texel. Throws Refusal when the image has no memory, or its memory was freed.
 std::byte* texel_of(const Device& device, const Image& image, const exec::TexelIndex& at);
 

@@ -140,8 +140,7 @@ exec::Reduction reduction_of(const VkSamplerCreateInfo& info) {
 }  // namespace
 
 VkResult CreateImageView(Device& device, const VkImageViewCreateInfo* info, VkImageView* out) {
-  if (!info->image->whole.base)
-    throw Refusal(fmt::format("{} is not bound to memory", info->image->whole.name));
+  check_bound(*info->image);
   auto made = std::make_unique<VkImageView_T>();
   exec::ImageView& view = made->view;
   const bool shows_slices = info->image->type == VK_IMAGE_TYPE_3D && info->viewType != VK_IMAGE_VIEW_TYPE_3D;

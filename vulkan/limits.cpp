@@ -237,7 +237,7 @@ VkPhysicalDeviceLimits limits_of(const pipeline::GpuParams& gpu, bool is_univers
 
 DeviceProperties properties_of(const pipeline::GpuParams& gpu, const std::string& preset, bool is_universal) {
   DeviceProperties p{};
-  // Nobody has certified the device. wgpu hides those that say so.
+  // Nobody has certified the device, but wgpu hides devices that say so.
   if (is_universal) p.conformanceVersion = {1, 3, 0, 0};
   set_text(p.driverName, "Glint");
   set_text(p.driverInfo, fmt::format("preset {}, functional", preset));

@@ -55,7 +55,7 @@ void check_box(const Box& box) {
   const auto fits = [](int32_t first, uint32_t count, uint32_t there) {
     return first >= 0 && uint32_t(first) <= there && count <= there - uint32_t(first);
   };
-  if (!box.image->whole.base) throw Refusal(fmt::format("{} is not bound to memory", whole.name));
+  check_bound(*box.image);
   if (box.offset.x % block || box.offset.y % block)
     throw Refusal(fmt::format("a region begins within a block of {}", whole.name));
   if (box.level >= whole.levels || !fits(box.offset.x / block, box.columns, whole.blocks(0, box.level)) ||

@@ -60,7 +60,7 @@ void check_region(const Image& image, const VkImageSubresourceLayers& part, cons
   const auto fits = [](int32_t first, uint32_t count, uint32_t there) {
     return first >= 0 && uint32_t(first) <= there && count <= there - uint32_t(first);
   };
-  if (!image.whole.base) throw Refusal(fmt::format("{} is not bound to memory", whole.name));
+  check_bound(image);
   if (part.mipLevel >= whole.levels || !fits(offset.x, extent.width, whole.extent(0, part.mipLevel)) ||
       !fits(offset.y, extent.height, whole.extent(1, part.mipLevel)) ||
       !fits(int32_t(part.baseArrayLayer), layers, whole.layers / whole.samples))

@@ -126,9 +126,8 @@ constexpr OpTime kTimes[] = {
     {"cvt.f32.f16", 4, 1, Unit::Fp32},
     {"cvt.f64.f32", 18, 8.5, Unit::Sfu},
     {"cvt.rn.f32.f64", 18, 8.5, Unit::Sfu},
-    // Products of matrices have a pipe of their own (bench/probes/tensor_h200.csv). What is not named here
-    // has
-    // the time of the unit: m16n8k16 of f16 and bf16, m16n8k32 of bytes, m16n8k256 of bits.
+    // Products of matrices have a pipe of their own (bench/probes/tensor_h200.csv). Ops that are not named
+    // here have the time of the unit: m16n8k16 of f16 and bf16, m16n8k32 of bytes, m16n8k256 of bits.
     {"mma.sync.aligned.m16n8k8.*tf32.f32", 24, 6},
     {"mma.sync.aligned.m16n8k8.*", 17, 4},
     {"mma.sync.aligned.m16n8k4.*", 17, 4},

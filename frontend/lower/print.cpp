@@ -8,6 +8,7 @@
 #include "base/diagnostics.h"
 #include "frontend/lower/lowering.h"
 #include "frontend/lower/typed.h"
+#include "frontend/message_numbers.h"
 #include "isa/message.h"
 
 namespace glint::frontend {
@@ -106,10 +107,7 @@ class Print {
   }
 
   void end_message(std::string_view op) {
-    auto& messages = l_.program().messages;
-    const auto at = std::find(messages.begin(), messages.end(), text_);
-    Operands operands{Operand::value(uint64_t(at - messages.begin()))};
-    if (at == messages.end()) messages.push_back(text_);
+    Operands operands{Operand::value(number_of_message(l_.program().messages, text_))};
     operands.insert(operands.end(), words_.begin(), words_.end());
     operands.resize(1 + isa::kMessageWords, Operand::value(0));
     l_.emit().effect(op, std::move(operands));

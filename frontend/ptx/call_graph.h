@@ -20,8 +20,6 @@ class CallGraph {
   // Returns the functions that are called and have code of their own, in the order of the module.
   const std::vector<const Function*>& called() const { return called_; }
   bool is_called(const Function& f) const;
-  // Returns whether the depth of calls is not known: functions call themselves or through registers.
-  bool is_deep() const { return !called_.empty(); }
   // Returns the kernel and all functions that it may reach, inlined or called.
   const std::set<const Function*>& reached() const { return reached_; }
 

@@ -274,6 +274,9 @@ class KernelLowering {
 // between SaveLive and RestoreLive. It runs after the passes that change drafts, which do not know regions.
 void enclose_calls(VirtualProgram& program);
 
+// Returns the parts of an operand in braces, or the operand itself where it stands without them.
+std::vector<const Operand*> parts_of(const Operand& o);
+
 // Returns the class of a PTX register: 8, 16 and 32 bits need one register of the ISA, 64 bits need a pair.
 RegisterClass class_of(const Type& type);
 

@@ -53,8 +53,7 @@ FragmentForm fragment_form(const Words& words) {
 
 constexpr const char* kFragments =
     "wmma has m16n16k16, m32n8k16 and m8n32k16 of f16, bf16, s8 and u8, m16n16k8 of tf32, m8n8k4 of f64, "
-    "and, "
-    "by rows and columns, m8n8k32 of s4 and u4 and m8n8k128 of b1";
+    "and, by rows and columns, m8n8k32 of s4 and u4 and m8n8k128 of b1";
 
 int access_row(const FragmentAccess& access, uint32_t bits, uint32_t parts) {
   MemoryForm form;

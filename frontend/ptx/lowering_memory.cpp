@@ -36,11 +36,7 @@ void KernelLowering::lower_access(const Instruction& inst, const MemoryForm& for
   if (inst.operands.size() < 2)
     return error(inst.position, fmt::format("'{}' takes a value and an address", joined(inst.words)));
   const Operand &value = inst.operands[load ? 0 : 1], &at = inst.operands[load ? 1 : 0];
-  std::vector<const Operand*> parts;
-  if (value.kind == Operand::Kind::Vector)
-    for (const Operand& part : value.parts) parts.push_back(&part);
-  else
-    parts.push_back(&value);
+  const std::vector<const Operand*> parts = parts_of(value);
   if (parts.size() != form.vector)
     return error(value.position, fmt::format("'{}' moves {} values, but the operand has {}",
                                              joined(inst.words), form.vector, parts.size()));

@@ -19,6 +19,13 @@ bool is_wide(OperandKind kind) {
 
 }  // namespace
 
+std::vector<const Operand*> parts_of(const Operand& o) {
+  if (o.kind != Operand::Kind::Vector) return {&o};
+  std::vector<const Operand*> out;
+  for (const Operand& part : o.parts) out.push_back(&part);
+  return out;
+}
+
 VirtualInst& KernelLowering::emit(int op, std::vector<VirtualOperand> operands, int64_t imm) {
   VirtualInst inst;
   inst.op = uint16_t(op);

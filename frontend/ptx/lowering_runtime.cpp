@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <map>
 
+#include "frontend/backend/slots.h"
+#include "frontend/message_numbers.h"
 #include "frontend/ptx/lowering.h"
 #include "isa/generic_address.h"
 #include "isa/message.h"
@@ -59,12 +61,11 @@ const VirtualInst* KernelLowering::definition(VirtualRegister r) const {
   const VirtualInst* found = nullptr;
   for (const DraftBlock& block : draft_.blocks)
     for (const VirtualInst& inst : block.code) {
-      const size_t results = inst.op == isa::op_index("unpack.b64") ? 2 : 1;
-      for (size_t k = 0; k < std::min(results, inst.operands.size()); ++k) {
-        if (inst.operands[k].kind != VirtualOperand::Kind::Register || inst.operands[k].reg != r) continue;
-        if (found) return nullptr;
-        found = &inst;
-      }
+      bool writes = false;
+      for_each_def(inst, [&](VirtualRegister written) { writes |= written == r; });
+      if (!writes) continue;
+      if (found) return nullptr;
+      found = &inst;
     }
   return found;
 }
@@ -102,10 +103,7 @@ std::optional<std::string> KernelLowering::text_of_variable(uint64_t place) cons
 
 // Appends a print of `text`, whose conversions take `words`.
 void KernelLowering::print(const std::string& text, std::vector<VirtualOperand> words, bool ends) {
-  std::vector<std::string>& messages = program_.messages;
-  const auto at = std::find(messages.begin(), messages.end(), text);
-  std::vector<VirtualOperand> operands{VirtualOperand::value(uint64_t(at - messages.begin()))};
-  if (at == messages.end()) messages.push_back(text);
+  std::vector<VirtualOperand> operands{VirtualOperand::value(number_of_message(program_.messages, text))};
   operands.insert(operands.end(), words.begin(), words.end());
   operands.resize(1 + isa::kMessageWords, VirtualOperand::value(0));
   compute(ends ? "print" : "print.part", std::move(operands));

@@ -57,14 +57,6 @@ std::string what_there_is(const Words& words) {
   return fmt::format("there are the types {}, .e4m3 and .e5m2", fmt::join(types, ", "));
 }
 
-// Returns the parts of an operand in braces; one register may stand without them.
-std::vector<const Operand*> parts_of(const Operand& o) {
-  std::vector<const Operand*> out;
-  if (o.kind != Operand::Kind::Vector) return {&o};
-  for (const Operand& part : o.parts) out.push_back(&part);
-  return out;
-}
-
 }  // namespace
 
 bool KernelLowering::lower_tensor(const Instruction& inst) {

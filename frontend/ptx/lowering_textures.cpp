@@ -70,9 +70,8 @@ std::vector<VirtualOperand> KernelLowering::image_place(const Instruction& inst,
   std::vector<VirtualOperand> out{
       compute32("cvt.u32.u64", {source(at.parts[0], OperandKind::Src64, {'u', 64})})};
   if (image.request == isa::ImageRequest::Query) return out;
-  std::vector<Operand> coordinates;
-  if (at.parts.size() == 2)
-    coordinates = at.parts[1].kind == Operand::Kind::Vector ? at.parts[1].parts : std::vector{at.parts[1]};
+  std::vector<const Operand*> coordinates;
+  if (at.parts.size() == 2) coordinates = parts_of(at.parts[1]);
   const bool is_float =
       image.request == isa::ImageRequest::Sample || image.request == isa::ImageRequest::Gather;
   const auto wanted = size_t(isa::num_coordinates(image.shape)) + isa::has_layers(image.shape);
@@ -83,7 +82,7 @@ std::vector<VirtualOperand> KernelLowering::image_place(const Instruction& inst,
   }
   for (size_t i = 0; i < wanted; ++i) {
     const bool is_layer = i == 0 && isa::has_layers(image.shape);
-    out.push_back(source(coordinates[i], OperandKind::Src32, {is_float && !is_layer ? 'f' : 's', 32}));
+    out.push_back(source(*coordinates[i], OperandKind::Src32, {is_float && !is_layer ? 'f' : 's', 32}));
   }
   return out;
 }
@@ -99,25 +98,16 @@ void KernelLowering::lower_image_row(const Instruction& inst) {
   if (inst.operands.size() > 2 && (row.image.has_offset || row.image.has_compare)) return report_no_row(inst);
   std::vector<VirtualOperand> operands = image_place(inst, inst.operands[place], row.image);
   if (operands.empty()) return;
-  const auto append = [&](const Operand& o, const Type& type) {
-    const std::vector<Operand> parts = o.kind == Operand::Kind::Vector ? o.parts : std::vector{o};
-    for (const Operand& part : parts) operands.push_back(source(part, OperandKind::Src32, type));
-  };
   // The level or the gradients are behind the place, a vector for each gradient; CUDA's compiler pads them,
   // too.
-  const bool is_float = row.image.request == isa::ImageRequest::Sample;
   for (size_t i = place + 1; i < inst.operands.size(); ++i) {
-    Operand o = inst.operands[i];
-    if (row.image.lod == isa::ImageLod::Gradients && o.kind == Operand::Kind::Vector)
-      o.parts.resize(std::min(o.parts.size(), size_t(isa::num_coordinates(row.image.shape))));
-    append(o, {is_float ? 'f' : 'b', 32});
+    std::vector<VirtualOperand> more = registers_from(inst.operands[i], OperandKind::Src32);
+    if (row.image.lod == isa::ImageLod::Gradients)
+      more.resize(std::min(more.size(), size_t(isa::num_coordinates(row.image.shape))));
+    operands.insert(operands.end(), more.begin(), more.end());
   }
   if (place == 1) {
-    const std::vector<Operand> parts = inst.operands[0].kind == Operand::Kind::Vector
-                                           ? inst.operands[0].parts
-                                           : std::vector{inst.operands[0]};
-    std::vector<VirtualOperand> results;
-    for (const Operand& part : parts) results.push_back(destination(part, OperandKind::Dst32, {'b', 32}));
+    const std::vector<VirtualOperand> results = registers_to(inst.operands[0], OperandKind::Dst32);
     operands.insert(operands.begin(), results.begin(), results.end());
   }
   size_t slots = 0;
@@ -140,7 +130,7 @@ void KernelLowering::lower_surface_bits(const Instruction& inst) {
   if (inst.operands.size() != 2)
     return error(inst.position, fmt::format("'{}' takes a place and values", joined(inst.words)));
   const Operand& list = inst.operands[stores ? 1 : 0];
-  const std::vector<Operand> parts = list.kind == Operand::Kind::Vector ? list.parts : std::vector{list};
+  const std::vector<const Operand*> parts = parts_of(list);
   if (parts.size() != values.count)
     return error(list.position, fmt::format("'{}' moves {} values, but the operand has {}",
                                             joined(inst.words), values.count, parts.size()));
@@ -153,7 +143,7 @@ void KernelLowering::lower_surface_bits(const Instruction& inst) {
   MemoryForm form;
   form.type = {'b', values.bits};
   const auto each_part = [&](auto&& move) {
-    for (uint32_t i = 0; i < values.count; ++i) move(form, words, i * values.bits / 8, parts[i]);
+    for (uint32_t i = 0; i < values.count; ++i) move(form, words, i * values.bits / 8, *parts[i]);
   };
   if (stores) each_part([&](auto&&... part) { store_word_part(part...); });
   std::vector<VirtualOperand> operands;

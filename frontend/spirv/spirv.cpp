@@ -32,8 +32,7 @@ namespace {
 // - conversions of a half to its own width (glslang);
 // - pointers to buffers in local variables whose decoration the optimiser dropped;
 // - members of blocks that overlap (vkd3d 1.2, push constants that only one of several shaders uses), which
-// are read
-//   and written where they say.
+// are read and written where they say;
 // - barriers and atomics of device scope without the capability (glslang, Vulkan memory model without scope
 // semantics).
 bool is_false_alarm(std::string_view message) {

@@ -28,9 +28,7 @@ std::vector<pipeline::KernelImage> read_kernel_images(const std::string& path) {
     const pipeline::ImageDescription& image = out.back().image;
     if (!names.insert(image.name).second)
       errors.error(image.where, fmt::format("image '{}' is there twice", image.name));
-    for (const pipeline::Save& save : image.saves)
-      if (const std::string wrong = wrong_with_output(save.file, true); !wrong.empty())
-        errors.error(save.where, fmt::format("cannot save '{}': {}", save.file, wrong));
+    check_saves(image.saves, true, errors);
   }
   errors.throw_if_errors();
   return out;
@@ -58,14 +56,10 @@ std::vector<std::string> keep_images(const std::vector<pipeline::KernelImage>& i
                                      const mem::AddressSpace& memory, const report::RunDirectory& directory,
                                      uint32_t threads) {
   std::vector<std::string> lines;
-  for (size_t i = 0; i < images.size(); ++i) {
-    const uint64_t bytes = views[i].bytes_before_level(1);
-    const std::byte* const texels = memory.find(views[i].base, bytes);
-    for (const pipeline::Save& save : images[i].image.saves) {
-      directory.write(save.file, image_file(save.file, views[i], {texels, size_t(bytes)}, threads));
-      lines.push_back(fmt::format("{:<10} {}", images[i].image.name, directory.path_of(save.file)));
-    }
-  }
+  for (size_t i = 0; i < images.size(); ++i)
+    if (!images[i].image.saves.empty())
+      for (std::string& line : save_image(images[i].image, views[i], memory, directory, threads))
+        lines.push_back(std::move(line));
   return lines;
 }
 

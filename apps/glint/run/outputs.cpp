@@ -76,8 +76,7 @@ std::string ending_of(const std::string& file) {
   return std::filesystem::path(file).extension().string();
 }
 
-}  // namespace
-
+// Returns what is wrong with the file's name, or "".
 std::string wrong_with_output(const std::string& file, bool is_image) {
   const std::string ending = ending_of(file);
   if (file.find('/') != std::string::npos)
@@ -86,6 +85,27 @@ std::string wrong_with_output(const std::string& file, bool is_image) {
   if (ending == ".png" || ending == ".pfm" || ending == ".exr")
     return is_image ? "" : "a buffer is not a picture: expected .npy, .csv or .raw";
   return is_image ? "expected .png, .pfm, .exr, .npy, .csv or .raw" : "expected .npy, .csv or .raw";
+}
+
+}  // namespace
+
+void check_saves(const std::vector<pipeline::Save>& saves, bool is_image, Diagnostics& errors) {
+  for (const pipeline::Save& save : saves)
+    if (const std::string wrong = wrong_with_output(save.file, is_image); !wrong.empty())
+      errors.error(save.where, fmt::format("cannot save to '{}'", save.file), wrong);
+}
+
+std::vector<std::string> save_image(const pipeline::ImageDescription& image, const exec::ImageView& view,
+                                    const mem::AddressSpace& memory, const report::RunDirectory& directory,
+                                    uint32_t threads) {
+  std::vector<std::string> lines;
+  const uint64_t bytes = view.bytes_before_level(1);
+  const std::byte* const texels = memory.find(view.base, bytes);
+  for (const pipeline::Save& save : image.saves) {
+    directory.write(save.file, image_file(save.file, view, {texels, size_t(bytes)}, threads));
+    lines.push_back(fmt::format("{:<10} {}", image.name, directory.path_of(save.file)));
+  }
+  return lines;
 }
 
 std::string first_numbers(const std::string& named, std::span<const std::byte> bytes, size_t count) {

@@ -7,7 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "exec/image_view.h"
+#include "memsys/address_space.h"
+#include "pipeline/description/description.h"
+#include "report/files/run_directory.h"
 
 namespace glint::app {
 
@@ -21,8 +25,13 @@ std::string buffer_file(const std::string& file, const std::string& type, std::s
 std::string image_file(const std::string& file, const exec::ImageView& view, std::span<const std::byte> bytes,
                        uint32_t threads = 1);
 
-// Returns what is wrong with the file's name, or "".
-std::string wrong_with_output(const std::string& file, bool is_image);
+// Reports the files of a buffer or an image that cannot be written so.
+void check_saves(const std::vector<pipeline::Save>& saves, bool is_image, Diagnostics& errors);
+
+// Writes level 0 of an image to each of its files in the run directory. Returns lines for the summary.
+std::vector<std::string> save_image(const pipeline::ImageDescription& image, const exec::ImageView& view,
+                                    const mem::AddressSpace& memory, const report::RunDirectory& directory,
+                                    uint32_t threads);
 
 // Returns the first numbers as text: "0.5 1 1.5".
 std::string first_numbers(const std::string& type, std::span<const std::byte> bytes, size_t count);

@@ -47,15 +47,10 @@ pipeline::PipelineDescription with_options(pipeline::PipelineDescription descrip
   return description;
 }
 
-void check_saves(const pipeline::PipelineDescription& d) {
+void check_outputs(const pipeline::PipelineDescription& d) {
   Diagnostics errors;
-  const auto check = [&](const std::vector<pipeline::Save>& saves, bool is_image) {
-    for (const pipeline::Save& save : saves)
-      if (const std::string wrong = wrong_with_output(save.file, is_image); !wrong.empty())
-        errors.error(save.where, fmt::format("cannot save to '{}'", save.file), wrong);
-  };
-  for (const auto& buffer : d.buffers) check(buffer.saves, false);
-  for (const auto& image : d.images) check(image.saves, true);
+  for (const auto& buffer : d.buffers) check_saves(buffer.saves, false, errors);
+  for (const auto& image : d.images) check_saves(image.saves, true, errors);
   errors.throw_if_errors();
 }
 
@@ -67,12 +62,9 @@ std::vector<std::string> keep(pipeline::PipelineWorld& world, const report::RunD
   for (size_t i = 0; i < d.images.size(); ++i) {
     if (d.images[i].saves.empty()) continue;
     const exec::ImageView& view = world.image(i);
-    const uint64_t bytes = view.bytes_before_level(1);
-    const std::byte* const texels = world.memory().find(view.base, bytes);
-    for (const pipeline::Save& save : d.images[i].saves) {
-      directory.write(save.file, image_file(save.file, view, {texels, size_t(bytes)}, threads));
-      lines.push_back(fmt::format("{:<10} {}", d.images[i].name, directory.path_of(save.file)));
-    }
+    const std::byte* const texels = world.memory().find(view.base, view.bytes_before_level(1));
+    for (std::string& line : save_image(d.images[i], view, world.memory(), directory, threads))
+      lines.push_back(std::move(line));
     const std::vector<float> floats = pipeline::texels_as_floats(view, texels);
     note_not_finite(d.images[i].saves[0].file, {view.width, view.height * view.depth * view.layers, floats},
                     view, result, info);
@@ -192,7 +184,7 @@ Exit run_pipeline(const Session& session, const std::string& what, const LaunchO
   const std::unique_ptr<frontend::ShaderCache> cache = open_shader_cache(options.shaders);
   const pipeline::PipelineDescription description =
       read_description(what, glsl_options(options.shaders, cache.get()));
-  check_saves(description);
+  check_outputs(description);
   const Machine machine = machine_of(session, description.machine, options);
   const pipeline::RenderJob& job = machine.job;
   const bool is_list = !description.launches[0].name.empty();
